@@ -1,0 +1,99 @@
+#pragma once
+/// \file
+/// What every constitutive law provides. A law is a struct without data members; its physics is
+/// templated on the scalar type (see scalar.hpp) and on the number N of tensor components
+/// (sym.hpp).
+///
+/// Signs inside a law: stress and strain tension positive; p = −tr(σ)/3 compression positive.
+/// Density is kinematics, not state: it is handed in, so a law that needs the specific volume takes
+/// v = ρ_p/ρ. Finite rotation is taken care of outside (objective.hpp).
+
+#include <concepts>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "models/parameter.hpp"
+#include "models/sym.hpp"
+
+namespace repose {
+
+/// The motion of a material point over one step.
+template <class T, int N>
+struct Increment {
+  Sym<T, N> strain;  ///< Δε = D Δt, logarithmic, tension positive [-]
+  T dt;              ///< Δt [s]
+  T density;         ///< ρ at the end of the step [kg/m³]; at its start it was ρ exp(tr Δε)
+};
+
+/// Which branch of an elastoplastic rate is meant. The integrator decides, never the law, so that a
+/// right-hand side is smooth between two located yield events.
+enum class Branch : std::uint8_t { elastic, plastic };
+
+/// Starting conditions in a user's terms; a law takes what it understands and rejects the rest.
+struct InitialConditions {
+  std::optional<double> p;                     ///< mean pressure [Pa]
+  std::optional<double> ocr;                   ///< p_c/p [-]
+  std::optional<double> v;                     ///< specific volume [-]
+  std::optional<double> density;               ///< [kg/m³]
+  std::optional<double> K0;                    ///< σ_horizontal/σ_vertical, vertical = y [-]
+  std::optional<std::array<double, 6>> sigma;  ///< xx,yy,zz,xy,yz,zx, COMPRESSION positive [Pa]
+};
+
+/// A material point at rest: Cauchy stress (tension positive), state variables in table order, ρ.
+struct InitialPoint {
+  Sym<double, 6> stress;
+  std::vector<double> state;
+  double density = 0.0;
+};
+
+/// The stress of an initial condition: from sigma, or from p and K0 (vertical = y). p defaults to
+/// `default_p`. Throws InputError where both are given or a value is out of range.
+Sym<double, 6> initial_stress(const InitialConditions& given, double default_p);
+
+/// Throws InputError if a condition that the law has no use for is given.
+void reject_unused(std::string_view law, const InitialConditions& given, bool takes_ocr,
+                   bool takes_v);
+
+/// The requirements on a law L. `theta` is a parameter vector in the order of L::parameters.
+///
+///   name, option_key, option, doc    strings; the option selects among the forms of one name
+///                                    ("form", "compression"; empty where a law has one form only)
+///   parameters, state                constexpr tables
+///   complete(theta)                  derives absent optional values, checks conditions between
+///                                    parameters (κ < λ); throws InputError
+///   Params<T>::from(span<T>)         parameter vector → named values
+///   State<T>                         state variables, convertible to and from an array
+///   update(P, increment, σ, state)   advances one step in place; returns the mask of points that
+///                                    could not be integrated (they are left as they were)
+///   rate(P, σ, state, ρ, D, branch, dσ/dt, dstate/dt)
+///   yield(P, σ, state, ρ, D)         < 0 elastic, 0 at yield [Pa]; −∞ where a law has no yield
+///   modulus(P, σ, state, ρ)          P-wave modulus ρc² [Pa]
+///   viscosity(P, σ, ρ, D)            shear viscosity that limits an explicit step [Pa·s]
+///   stored_energy(P, σ, state, ρ)    recoverable energy per current volume [J/m³]
+///   density_at(P, p, ocr)            ρ at rest under pressure p [kg/m³]
+///   initial(P, conditions)           InitialPoint; throws InputError
+template <class L>
+concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
+                                   const Increment<double, 4>& inc, Sym<double, 4>& stress,
+                                   typename L::template State<double>& state, double x,
+                                   std::vector<double>& theta, const InitialConditions& given) {
+  { L::name } -> std::convertible_to<std::string_view>;
+  { L::option_key } -> std::convertible_to<std::string_view>;
+  { L::option } -> std::convertible_to<std::string_view>;
+  { L::doc } -> std::convertible_to<std::string_view>;
+  {std::span<const ParamInfo>(L::parameters)};
+  {std::span<const StateField>(L::state)};
+  { L::has_stress_memory } -> std::convertible_to<bool>;
+  {L::complete(theta)};
+  { L::update(P, inc, stress, state) } -> std::same_as<bool>;
+  {L::rate(P, stress, state, x, stress, Branch::elastic, stress, state)};
+  { L::yield(P, stress, state, x, stress) } -> std::same_as<double>;
+  { L::modulus(P, stress, state, x) } -> std::same_as<double>;
+  { L::viscosity(P, stress, x, stress) } -> std::same_as<double>;
+  { L::stored_energy(P, stress, state, x) } -> std::same_as<double>;
+  { L::density_at(P, x, x) } -> std::same_as<double>;
+  { L::initial(P, given) } -> std::same_as<InitialPoint>;
+};
+
+}  // namespace repose

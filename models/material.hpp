@@ -1,0 +1,89 @@
+#pragma once
+/// \file
+/// The boundary between a law and everything that moves material points: one virtual call per batch
+/// of points in structure-of-arrays form, never one per point.
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "models/law.hpp"
+
+namespace repose {
+
+/// A run of material points in plane strain (4 tensor components: xx, yy, zz, xy). Every array has
+/// room for padded(count) entries, and the entries behind `count` hold copies of valid points.
+struct Batch {
+  std::size_t count = 0;
+  double dt = 0.0;                        ///< [s]
+  std::array<const double*, 4> strain{};  ///< Δε = sym(L) Δt, tension positive
+  const double* spin = nullptr;           ///< rotation angle of the step [rad], or null for none
+  double* density = nullptr;        ///< in: at the start of the step; out: at its end [kg/m³]
+  std::array<double*, 4> stress{};  ///< Cauchy, tension positive [Pa]; updated in place
+  std::array<double*, 4> state{};   ///< state variables in table order; updated in place
+  double* modulus = nullptr;        ///< out, optional: ρc² [Pa]
+  double* viscosity = nullptr;      ///< out, optional: shear viscosity limiting the step [Pa s]
+  double* work = nullptr;  ///< out, optional: ½(σ_n + σ_{n+1}):Δε, energy per mean volume [J/m³]
+};
+
+/// Batches are processed in whole SIMD registers.
+constexpr std::size_t pack_size = Pack::size;
+constexpr std::size_t padded(std::size_t count) {
+  return (count + pack_size - 1) / pack_size * pack_size;
+}
+
+/// What a law is called and made of, for help texts and readers of input files.
+struct LawInfo {
+  std::string_view name;        ///< "mu_i"
+  std::string_view option_key;  ///< "form"; empty if the law has one form only
+  std::string_view option;      ///< "regularised"
+  std::string_view doc;
+  std::span<const ParamInfo> parameters;
+  std::span<const StateField> state;
+  bool has_stress_memory;  ///< the stress at the start of a step matters
+};
+
+/// The outcome of a batch: all points advanced, or the first one that could not be.
+struct UpdateReport {
+  static constexpr std::size_t none = static_cast<std::size_t>(-1);
+  std::size_t failed = none;
+  bool ok() const { return failed == none; }
+};
+
+/// A law with its parameters.
+class Material {
+ public:
+  virtual ~Material() = default;
+  Material(const Material&) = delete;
+  Material& operator=(const Material&) = delete;
+
+  virtual const LawInfo& law() const = 0;
+  /// Parameters in table order, derived ones filled in; NaN for optional ones that stay absent.
+  std::span<const double> theta() const { return theta_; }
+  double parameter(std::string_view parameter_name) const;
+
+  /// Rotates, strains and updates the points of a batch. A point that cannot be updated (an input
+  /// that is not a number, a step beyond any stress) keeps its stress, state and density to the
+  /// last bit, does no work, and is reported.
+  virtual UpdateReport update(const Batch& batch) const = 0;
+
+  /// Recoverable energy per current volume of each point [J/m³].
+  virtual void stored_energy(const Batch& batch, double* energy) const = 0;
+
+  /// ρc² [Pa] of each point as it is.
+  virtual void modulus(const Batch& batch, double* rho_c2) const = 0;
+
+  /// Throws InputError if the law cannot start from these conditions.
+  virtual InitialPoint initial(const InitialConditions& given) const = 0;
+
+  /// Density at rest under mean pressure p [Pa] (p_c = ocr p where the law knows it) [kg/m³].
+  virtual double density_at(double p, double ocr) const = 0;
+
+ protected:
+  explicit Material(std::vector<double> theta) : theta_(std::move(theta)) {}
+
+ private:
+  std::vector<double> theta_;
+};
+
+}  // namespace repose

@@ -1,0 +1,55 @@
+#pragma once
+/// \file
+/// Every law of the library. A new law is one header and one entry in AllLaws.
+
+#include <tuple>
+
+#include "models/law_material.hpp"
+#include "models/modified_cam_clay.hpp"
+#include "models/mu_i.hpp"
+#include "models/newtonian.hpp"
+
+namespace repose {
+
+/// The first entry of a name is its default form where defaults exist (default_option()).
+using AllLaws =
+    std::tuple<ModifiedCamClay<Compression::ln_v_ln_p>, ModifiedCamClay<Compression::v_ln_p>,
+               MuIElastoviscoplastic, MuIRegularised, Newtonian<Tension::cut_off>,
+               Newtonian<Tension::carried>>;
+
+/// A law as an input file writes it.
+struct LawSpec {
+  std::string name;
+  std::map<std::string, std::string> options;  ///< option key → value, e.g. form = "regularised"
+  std::map<std::string, double> values;        ///< parameter → value in SI units
+};
+
+/// All forms of all laws, in the order of AllLaws.
+std::span<const LawInfo> all_laws();
+
+/// The form of `name` that applies if its option is left out, or null if the option is required.
+const LawInfo* default_form(std::string_view name);
+
+/// Finds the form, checks and completes the parameters. Throws InputError; its key is a parameter's
+/// or option's name, or "name".
+const LawInfo& find_law(const LawSpec& spec);
+std::vector<double> checked_parameters(const LawSpec& spec);
+std::unique_ptr<Material> make_material(const LawSpec& spec);
+
+/// Calls f(law) with a value of the law type that belongs to `info` (one of all_laws()).
+template <class F>
+auto visit_law(const LawInfo& info, F&& f) {
+  using Result = decltype(f(std::tuple_element_t<0, AllLaws>{}));
+  const auto try_from = [&]<std::size_t i>(const auto& self,
+                                           std::integral_constant<std::size_t, i>) -> Result {
+    using L = std::tuple_element_t<i, AllLaws>;
+    if constexpr (i + 1 < std::tuple_size_v<AllLaws>) {
+      if (L::name != info.name || L::option != info.option)
+        return self(self, std::integral_constant<std::size_t, i + 1>{});
+    }
+    return f(L{});
+  };
+  return try_from(try_from, std::integral_constant<std::size_t, 0>{});
+}
+
+}  // namespace repose

@@ -1,0 +1,175 @@
+#pragma once
+/// \file
+/// The three scalar types a law is instantiated with, and the few operations they share:
+///   double                   one material point (point driver, tests),
+///   Pack                     one SIMD register of points (Material Point Method batches),
+///   ceres::Jet<double, n>    a dual number (consistent tangents, parameter sensitivities).
+/// A law uses select() instead of an if, so that a Pack can take both branches lane by lane.
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <ceres/jet.h>
+#include <xsimd/xsimd.hpp>
+
+namespace repose {
+
+/// One SIMD register of doubles for the instruction set the library is compiled for.
+using Pack = xsimd::batch<double>;
+
+/// A value with n first derivatives.
+template <int n>
+using Dual = ceres::Jet<double, n>;
+
+template <class T>
+struct ScalarTraits {
+  using Value = T;    ///< the type without derivatives
+  using Mask = bool;  ///< the result of a comparison
+  static constexpr bool is_dual = false;
+};
+template <>
+struct ScalarTraits<Pack> {
+  using Value = Pack;
+  using Mask = Pack::batch_bool_type;
+  static constexpr bool is_dual = false;
+};
+template <int n>
+struct ScalarTraits<Dual<n>> {
+  using Value = double;
+  using Mask = bool;
+  static constexpr bool is_dual = true;
+};
+
+template <class T>
+using Value = typename ScalarTraits<T>::Value;
+template <class T>
+using Mask = typename ScalarTraits<T>::Mask;
+
+inline double value(double x) { return x; }
+inline const Pack& value(const Pack& x) { return x; }
+template <int n>
+double value(const Dual<n>& x) {
+  return x.a;
+}
+
+/// mask ? a : b, lane by lane for a Pack.
+inline double select(bool mask, double a, double b) { return mask ? a : b; }
+inline Pack select(const Mask<Pack>& mask, const Pack& a, const Pack& b) {
+  return xsimd::select(mask, a, b);
+}
+template <int n>
+Dual<n> select(bool mask, const Dual<n>& a, const Dual<n>& b) {
+  return mask ? a : b;
+}
+
+inline bool any(bool mask) { return mask; }
+inline bool any(const Mask<Pack>& mask) { return xsimd::any(mask); }
+
+inline bool finite(double x) { return std::isfinite(x); }
+inline Mask<Pack> finite(const Pack& x) { return (x - x) == Pack(0.0); }
+template <int n>
+bool finite(const Dual<n>& x) {
+  return std::isfinite(x.a);
+}
+
+/// x, but not below the bound; a NaN in x stays a NaN.
+template <class T>
+T floor_at(const T& x, double bound) {
+  return select(x < T(bound), T(bound), x);
+}
+
+template <class T>
+T square(const T& x) {
+  return x * x;
+}
+
+/// 2^k from k + 1.5·2^52, whose lowest bits are those of k.
+inline double power_of_two(double shifted) {
+  return std::bit_cast<double>((std::bit_cast<std::uint64_t>(shifted) << 52) +
+                               (std::uint64_t{1023} << 52));
+}
+inline Pack power_of_two(const Pack& shifted) {
+  using Bits = xsimd::batch<std::uint64_t>;
+  return xsimd::bitwise_cast<Pack>((xsimd::bitwise_cast<Bits>(shifted) << 52) +
+                                   Bits(std::uint64_t{1023} << 52));
+}
+
+/// eˣ and eˣ − 1, each to its own relative accuracy (2 units in the last place): 1 + (eˣ − 1) would
+/// lose eˣ for x ≪ 0, eˣ − 1 by subtraction would lose itself near 0. ∞ above x = 709, 0 below
+/// −708.
+template <class T>
+struct ExpPair {
+  T whole, minus_one;
+};
+
+/// Both at the price of one: x = k ln 2 + r, |r| <= ½ ln 2, and the Taylor series of e^r − 1 to r¹³
+/// (the next term is 1.3e-17 of the sum).
+template <class T>
+ExpPair<T> exp_pair(const T& x) {
+  if constexpr (ScalarTraits<T>::is_dual) {
+    const ExpPair<double> at = exp_pair(value(x));
+    T whole(at.whole);
+    T minus_one(at.minus_one);
+    whole.v = at.whole * x.v;
+    minus_one.v = whole.v;
+    return {whole, minus_one};
+  } else {
+    constexpr double highest = 709.0;
+    constexpr double lowest = -708.0;
+    constexpr double ln_2_high = 6.93147180369123816490e-01;  // 33 bits: k ln_2_high is exact
+    constexpr double ln_2_low = 1.90821492927058770002e-10;
+    constexpr double shift = 6755399441055744.0;  // 1.5·2^52: adding it rounds to an integer
+    const auto above = x > T(highest);
+    const auto below = x < T(lowest);
+    const T bounded = select(above, T(highest), select(below, T(lowest), x));  // NaN stays NaN
+    const T shifted = bounded * T(1.44269504088896340736) + T(shift);
+    const T k = shifted - T(shift);
+    const T r = (bounded - k * T(ln_2_high)) - k * T(ln_2_low);
+    constexpr auto c = [] {  // 1/(n + 2)!
+      std::array<double, 12> inverse{};
+      double factorial = 1.0;
+      for (std::size_t n = 0; n < 12; ++n) {
+        factorial *= static_cast<double>(n + 2);
+        inverse[n] = 1.0 / factorial;
+      }
+      return inverse;
+    }();
+    const auto pair = [&](std::size_t n) { return T(c[n]) + T(c[n + 1]) * r; };
+    const T r2 = r * r;
+    const T r4 = r2 * r2;
+    const T q = (pair(0) + r2 * pair(2)) + r4 * (pair(4) + r2 * pair(6)) +
+                (r4 * r4) * (pair(8) + r2 * pair(10));
+    const T m = r + r2 * q;
+    const T two_k = power_of_two(shifted);
+    const T infinity(std::numeric_limits<double>::infinity());
+    return {select(above, infinity, select(below, T(0.0), T(two_k + two_k * m))),
+            select(above, infinity, T(two_k * m + (two_k - T(1.0))))};
+  }
+}
+
+/// (eˣ − 1)/x from the pair of x, continuous through x = 0. Error: a few units in the last place;
+/// the derivative of a Dual near 0 comes from the series (truncated below 1e-19 for |x| < 0.02),
+/// because the quotient rule would divide two cancelled numbers there.
+template <class T>
+T expm1_over(const T& x, const ExpPair<T>& of_x) {
+  if constexpr (ScalarTraits<T>::is_dual) {
+    if (std::abs(value(x)) < 0.02) {
+      T sum(1.0);
+      for (int k = 8; k >= 2; --k) sum = T(1.0) + x * sum / static_cast<double>(k);
+      return sum;
+    }
+    return of_x.minus_one / x;
+  } else {
+    const auto zero = x == T(0.0);
+    return select(zero, T(1.0), T(of_x.minus_one / select(zero, T(1.0), x)));
+  }
+}
+template <class T>
+T expm1_over(const T& x) {
+  return expm1_over(x, exp_pair(x));
+}
+
+}  // namespace repose
