@@ -1,0 +1,205 @@
+/// The whole state of a simulation in one HDF5 file. Everything that the bits of the following
+/// steps depend on is in it, the order of the points included.
+
+#include <bit>
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include "mpm/atomic_file.hpp"
+#include "mpm/simulation_impl.hpp"
+
+namespace repose::mpm {
+namespace {
+
+constexpr std::int64_t format_version = 1;
+
+/// An open HDF5 object, closed by its own function.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
+    if (id < 0) throw std::runtime_error(fmt::format("HDF5 could not {}", what));
+  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+template <class T>
+hid_t type_of();
+template <>
+hid_t type_of<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+hid_t type_of<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+
+template <class T>
+void write(hid_t file, const std::string& name, const std::vector<T>& values) {
+  const hsize_t n = values.size();
+  const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a data space");
+  const Handle set(
+      H5Dcreate2(file, name.c_str(), type_of<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose, "create a data set");
+  if (n > 0 && H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    throw std::runtime_error(fmt::format("HDF5 could not write {}", name));
+}
+
+template <class T>
+std::vector<T> read(hid_t file, const std::string& name) {
+  const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, ("find " + name).c_str());
+  const Handle space(H5Dget_space(set), H5Sclose, "read a data space");
+  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  if (!values.empty() &&
+      H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
+  return values;
+}
+
+/// Every scalar that a run carries along, in one fixed order for both directions.
+template <class Impl, class Real, class Whole>
+void each_scalar(Impl& s, Real&& real, Whole&& whole) {
+  real(s.time);
+  real(s.last_dt);
+  real(s.dt_min);
+  real(s.dt_max);
+  real(s.drift);
+  real(s.fixed_step_excess);
+  real(s.viscous_step_excess);
+  real(s.first_dt);
+  real(s.signals.speed);
+  real(s.signals.signal);
+  real(s.signals.viscous_rate);
+  real(s.ledger.start);
+  real(s.ledger.start_elastic);
+  real(s.ledger.stress_work);
+  real(s.ledger.transfer_loss);
+  real(s.ledger.wall_loss);
+  real(s.ledger.outflow);
+  real(s.ledger.outflow_elastic);
+  real(s.ledger.outflow_mass);
+  real(s.ledger.kinetic);
+  real(s.ledger.power);
+  real(s.highest_energy);
+  whole(s.steps);
+  whole(s.point_steps);
+  whole(s.sorts);
+  whole(s.wall_corrections);
+}
+
+/// Turns HDF5's own error printing off for a while.
+class Quiet {
+ public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+}  // namespace
+
+void Simulation::save(const std::filesystem::path& path) const {
+  const Quiet quiet;
+  const Impl& s = *impl_;
+  // assembled in memory, so that the disk sees one plain write that is whole or absent
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
+  H5Pset_fapl_core(access, 1 << 20, false);
+  const Handle file(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+                    "create a file in memory");
+
+  std::vector<double> reals;
+  std::vector<std::int64_t> wholes{format_version, s.must_sort ? 1 : 0};
+  each_scalar(
+      s, [&](double x) { reals.push_back(x); }, [&](std::int64_t x) { wholes.push_back(x); });
+  write(file, "reals", reals);
+  write(file, "wholes", wholes);
+
+  std::vector<std::int64_t> blocks;
+  for (const PointBlock& pb : s.grid.point_blocks) {
+    blocks.push_back(pb.bx);
+    blocks.push_back(pb.by);
+    for (const Range& range : pb.range) {
+      blocks.push_back(static_cast<std::int64_t>(range.begin));
+      blocks.push_back(static_cast<std::int64_t>(range.count));
+    }
+  }
+  write(file, "blocks", blocks);
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const PointSet& points = s.bodies[b];
+    write(file, fmt::format("body{}_id", b), points.id);
+    for (std::size_t f = 0; f < points.fields; ++f)
+      write(file, fmt::format("body{}_field{}", b, f), points.field[f]);
+  }
+  H5Fflush(file, H5F_SCOPE_GLOBAL);
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) throw std::runtime_error("HDF5 could not give the checkpoint's size");
+  std::string image(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, image.data(), image.size()) < 0)
+    throw std::runtime_error("HDF5 could not give the checkpoint's bytes");
+  write_atomically(path, image);
+}
+
+void Simulation::load(const std::filesystem::path& path) {
+  const Quiet quiet;
+  Impl& s = *impl_;
+  const auto reject = [&](const std::string& why) { throw IoError(path, why); };
+  try {
+    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
+                      "open it as a checkpoint");
+    const std::vector<double> reals = read<double>(file, "reals");
+    const std::vector<std::int64_t> wholes = read<std::int64_t>(file, "wholes");
+    if (wholes.size() < 2 || wholes[0] != format_version)
+      reject("it is a checkpoint of another version of repose");
+    std::size_t next_real = 0;
+    std::size_t next_whole = 2;
+    s.must_sort = wholes[1] != 0;
+    each_scalar(
+        s, [&](double& x) { x = reals.at(next_real++); },
+        [&](std::int64_t& x) { x = wholes.at(next_whole++); });
+
+    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+      PointSet& points = s.bodies[b];
+      points.id = read<std::int64_t>(file, fmt::format("body{}_id", b));
+      for (std::size_t f = 0; f < points.fields; ++f) {
+        points.field[f] = read<double>(file, fmt::format("body{}_field{}", b, f));
+        if (points.field[f].size() != points.id.size()) reject("its arrays differ in length");
+      }
+      points.count = 0;
+      for (const std::int64_t id : points.id) points.count += id >= 0 ? 1 : 0;
+    }
+
+    const std::vector<std::int64_t> blocks = read<std::int64_t>(file, "blocks");
+    const std::size_t width = 2 + 2 * s.bodies.size();
+    if (blocks.size() % width != 0) reject("it holds another number of bodies");
+    std::vector<PointBlock> restored(blocks.size() / width);
+    for (std::size_t k = 0; k < restored.size(); ++k) {
+      const std::int64_t* row = blocks.data() + k * width;
+      restored[k].bx = static_cast<int>(row[0]);
+      restored[k].by = static_cast<int>(row[1]);
+      for (std::size_t b = 0; b < s.bodies.size(); ++b)
+        restored[k].range.push_back(
+            {static_cast<std::size_t>(row[2 + 2 * b]), static_cast<std::size_t>(row[3 + 2 * b])});
+    }
+    s.grid.restore(std::move(restored));
+  } catch (const IoError&) {
+    throw;
+  } catch (const std::exception& e) {
+    reject(e.what());
+  }
+}
+
+}  // namespace repose::mpm

@@ -1,0 +1,281 @@
+#include "mpm/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace repose::mpm {
+namespace {
+
+constexpr double max_points = 1e8;  ///< about 25 GB
+constexpr double max_cells = 1e9;   ///< of the box: half a gigabyte of tables
+constexpr double min_cells = 3;     ///< across the box
+constexpr double max_frames = 1e6;
+constexpr double max_rows = 1e7;
+constexpr double tolerance = 1e-6;  ///< of a cell or a point spacing
+
+std::string number(double x, int digits = 10) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, x);
+  return text;
+}
+
+std::string path_of(std::size_t body, const char* key) {
+  return "body[" + std::to_string(body) + "]." + key;
+}
+
+/// x is n·unit for a whole n >= 1, to within `tolerance` of a unit.
+bool is_multiple(double x, double unit) {
+  const double n = std::round(x / unit);
+  return n >= 1.0 && std::abs(x - n * unit) <= tolerance * unit;
+}
+
+int points_per_edge(const Scene& scene) {
+  return static_cast<int>(std::lround(std::sqrt(scene.points_per_cell)));
+}
+
+void require(double x, const Range& range, const char* key, const char* what) {
+  if (std::isfinite(x) && range.contains(x)) return;
+  throw InputError(
+      key, std::string(what) + " = " + number(x) + " is out of range: must be " + to_string(range));
+}
+
+void check_numbers(const Scene& scene) {
+  require(scene.end_time, not_negative, "scene.end_time", "end_time");
+  require(scene.gravity, not_negative, "scene.gravity", "gravity");
+  require(scene.tilt_deg, {-90.0, 90.0, false, false}, "scene.tilt_deg", "tilt_deg");
+  for (const double length : scene.domain) require(length, positive, "domain.size", "domain.size");
+  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
+                                  {scene.left, "domain.left"},
+                                  {scene.right, "domain.right"},
+                                  {scene.top, "domain.top"}})
+    if (wall.kind == Wall::Kind::friction) require(wall.friction, not_negative, key, "friction");
+  require(scene.h, positive, "grid.h", "h");
+  const int edge = scene.points_per_cell > 0 ? points_per_edge(scene) : 0;
+  if (scene.points_per_cell > 100 || edge < 1 || edge * edge != scene.points_per_cell)
+    throw InputError("grid.points_per_cell",
+                     "points_per_cell = " + std::to_string(scene.points_per_cell) +
+                         " must be a square number from 1 to 100: 1, 4, 9, 16, ...");
+  require(scene.courant, {0.0, 1.0, true, false}, "step.courant", "courant");
+  if (scene.dt) require(*scene.dt, positive, "step.dt", "dt");
+  require(scene.frame_interval, not_negative, "output.frame_interval", "frame_interval");
+  require(scene.series_interval, not_negative, "output.series_interval", "series_interval");
+  const auto count_limit = [&](double interval, double most, const char* key, const char* what) {
+    if (interval > 0.0 && scene.end_time / interval > most)
+      throw InputError(key, "an interval of " + number(interval) + " s would write " +
+                                number(scene.end_time / interval, 3) + " " + what +
+                                "; it must be >= " + number(scene.end_time / most) + " s");
+  };
+  count_limit(scene.frame_interval, max_frames, "output.frame_interval", "frames");
+  count_limit(scene.series_interval, max_rows, "output.series_interval", "rows");
+}
+
+/// h divides the box's width, and every body holds whole point spacings.
+bool fits(const Scene& scene, double h, bool with_bodies) {
+  if (!is_multiple(scene.domain[0], h)) return false;
+  const double spacing = h / points_per_edge(scene);
+  return !with_bodies || std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) {
+    return is_multiple(b.size[0], spacing) && is_multiple(b.size[1], spacing);
+  });
+}
+
+/// The fewest digits of h, up to its double, with which it still fits.
+std::string shortest(const Scene& scene, double h, bool with_bodies) {
+  for (int digits = 1; digits < 17; ++digits) {
+    const std::string text = number(h, digits);
+    if (fits(scene, std::stod(text), with_bodies)) return text;
+  }
+  return number(h, 17);
+}
+
+/// "0.005 or 0.00625": cell sizes within a factor 2 of h that fit, below and above it, short
+/// decimals first; "" if there is none.
+std::string nearby_h(const Scene& scene, bool with_bodies) {
+  std::string below, above;
+  const auto better = [&](const std::string& text, const std::string& than, double h) {
+    if (than.empty()) return true;
+    const bool short_text = text.size() <= 8, short_than = than.size() <= 8;
+    if (short_text != short_than) return short_text;
+    return std::abs(std::stod(text) - h) < std::abs(std::stod(than) - h);
+  };
+  const auto lowest = static_cast<std::int64_t>(std::max(1.0, scene.domain[0] / (2.0 * scene.h)));
+  const auto highest = static_cast<std::int64_t>(std::min(2.0 * scene.domain[0] / scene.h, 1e5));
+  for (std::int64_t n = lowest; n <= highest; ++n) {
+    const double h = scene.domain[0] / static_cast<double>(n);
+    if (!fits(scene, h, with_bodies)) continue;
+    const std::string text = shortest(scene, h, with_bodies);
+    std::string& best = h < scene.h ? below : above;
+    if (better(text, best, scene.h)) best = text;
+  }
+  return below + (below.empty() || above.empty() ? "" : " or ") + above;
+}
+
+/// The lengths next to x that are whole multiples of a unit.
+std::string good_lengths(double x, double unit) {
+  const double n = std::floor(x / unit);
+  const std::string above = number((n + 1.0) * unit);
+  return n < 1.0 ? above : number(n * unit) + " or " + above;
+}
+
+void check_cells(const Scene& scene) {
+  if (!is_multiple(scene.domain[0], scene.h)) {
+    std::string near = nearby_h(scene, true);
+    if (near.empty()) near = nearby_h(scene, false);
+    throw InputError(
+        "grid.h", "h = " + number(scene.h) + " m does not divide the box's width of " +
+                      number(scene.domain[0]) + " m (" + number(scene.domain[0] / scene.h, 6) +
+                      " cells); " +
+                      (near.empty() ? "it must be at most the width" : "h = " + near + " m would"));
+  }
+  if (!is_multiple(scene.domain[1], scene.h))
+    throw InputError("domain.size", "the box's height of " + number(scene.domain[1]) + " m is " +
+                                        number(scene.domain[1] / scene.h, 6) +
+                                        " cells of h = " + number(scene.h) + " m; " +
+                                        good_lengths(scene.domain[1], scene.h) + " m would fit");
+  // opposite walls must not share a node that both mirror
+  const double least = std::min(scene.domain[0], scene.domain[1]) / scene.h;
+  if (least < min_cells - 0.5)
+    throw InputError("grid.h", "the box is " + number(std::round(least)) +
+                                   " cells across; the walls need at least " + number(min_cells) +
+                                   " between them: h <= " + number(least * scene.h / min_cells) +
+                                   " m");
+  const double cells = scene.domain[0] / scene.h * (scene.domain[1] / scene.h);
+  if (cells > max_cells)
+    throw InputError("grid.h",
+                     "the box has " + number(cells, 3) +
+                         " cells, more than memory is likely to hold (" + number(max_cells) +
+                         "); h >= " + number(scene.h * std::sqrt(cells / max_cells) * 1.0005, 3) +
+                         " m would do");
+}
+
+void check_geometry(const Scene& scene) {
+  if (scene.bodies.empty()) throw InputError("body", "a scene needs at least one [[body]]");
+  const double spacing = point_spacing(scene);
+  const char* const axis[2] = {"x", "y"};
+  double points = 0.0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (!std::isfinite(body.origin[k]) || !std::isfinite(body.velocity[k]) ||
+          !std::isfinite(body.spin))
+        throw InputError(path_of(i, "origin"), "origin, velocity and spin must be finite");
+      if (!(body.size[k] > 0.0) || !std::isfinite(body.size[k]))
+        throw InputError(path_of(i, "size"), "size must be > 0 m");
+      const double end = body.origin[k] + body.size[k];
+      const double slack = 1e-9 * scene.domain[k];
+      if (body.origin[k] < -slack || end > scene.domain[k] + slack)
+        throw InputError(path_of(i, body.size[k] > scene.domain[k] + slack ? "size" : "origin"),
+                         "the body reaches from " + std::string(axis[k]) + " = " +
+                             number(body.origin[k]) + " to " + number(end) +
+                             " m, outside the box [0, " + number(scene.domain[k]) + "] m");
+    }
+    points += body.size[0] / spacing * (body.size[1] / spacing);
+  }
+  if (points > max_points)
+    throw InputError("grid.h",
+                     "h = " + number(scene.h) + " m with " + std::to_string(scene.points_per_cell) +
+                         " points per cell makes " + number(points, 3) +
+                         " points, more than memory is likely to hold (" + number(max_points) +
+                         "); h >= " + number(scene.h * std::sqrt(points / max_points) * 1.0005, 3) +
+                         " m would do");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double size = scene.bodies[i].size[k];
+      if (is_multiple(size, spacing)) continue;
+      const std::string near = nearby_h(scene, true);
+      throw InputError(path_of(i, "size"), "the points cannot represent " + number(size) +
+                                               " m along " + axis[k] + " exactly: they stand " +
+                                               number(spacing) + " m apart (h/" +
+                                               std::to_string(points_per_edge(scene)) + "); " +
+                                               good_lengths(size, spacing) + " m would do" +
+                                               (near.empty() ? "" : ", or h = " + near + " m"));
+    }
+}
+
+void check_overlap(const Scene& scene) {
+  const auto name = [&](std::size_t i) {
+    const std::string& given = scene.bodies[i].name;
+    return "body[" + std::to_string(i) + "]" + (given.empty() ? "" : " \"" + given + "\"");
+  };
+  const double slack = tolerance * scene.h;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Body &a = scene.bodies[i], &b = scene.bodies[j];
+      std::array<double, 2> from{}, to{};
+      for (std::size_t k = 0; k < 2; ++k) {
+        from[k] = std::max(a.origin[k], b.origin[k]);
+        to[k] = std::min(a.origin[k] + a.size[k], b.origin[k] + b.size[k]);
+      }
+      if (to[0] - from[0] <= slack || to[1] - from[1] <= slack) continue;
+      throw InputError(path_of(i, "origin"), name(i) + " overlaps " + name(j) + " in x = [" +
+                                                 number(from[0]) + ", " + number(to[0]) +
+                                                 "] m, y = [" + number(from[1]) + ", " +
+                                                 number(to[1]) + "] m");
+    }
+}
+
+/// What the material says to the state at the base of a lithostatic body.
+InitialPoint lithostatic_base(const Scene& scene, const Body& body, const Material& material) {
+  const InitialConditions& given = body.initial;
+  if (given.p || given.v || given.density || given.sigma)
+    throw InputError("lithostatic",
+                     "a lithostatic state follows from the weight: beside it only K0 "
+                     "and ocr can be given");
+  const double g_normal = scene.gravity * std::cos(scene.tilt_deg * std::numbers::pi / 180.0);
+  if (!(g_normal > 1e-12))
+    throw InputError("lithostatic", "a lithostatic state needs gravity towards the floor");
+  InitialConditions base = given;
+  const double vertical =
+      material.density_at(0.0, given.ocr.value_or(1.0)) * g_normal * body.size[1];
+  base.p = vertical * (1.0 + 2.0 * given.K0.value_or(1.0)) / 3.0;
+  return material.initial(base);
+}
+
+void check_law(const Scene& scene, std::size_t i) {
+  const Body& body = scene.bodies[i];
+  std::unique_ptr<Material> material;
+  try {
+    material = make_material(body.law);
+  } catch (const InputError& error) {
+    throw InputError(path_of(i, "law.") + error.key(), error.what());
+  }
+  try {
+    const InitialPoint start = body.lithostatic ? lithostatic_base(scene, body, *material)
+                                                : material->initial(body.initial);
+    if (!(start.density > 0.0) || !std::isfinite(start.density))
+      throw InputError("density",
+                       "the initial density comes out as " + number(start.density) + " kg/m³");
+  } catch (const InputError& error) {
+    const auto table = material->law().parameters;
+    const bool of_law = std::any_of(table.begin(), table.end(),
+                                    [&](const ParamInfo& p) { return p.name == error.key(); });
+    throw InputError(path_of(i, of_law ? "law." : "initial.") + error.key(), error.what());
+  }
+}
+
+}  // namespace
+
+double point_spacing(const Scene& scene) { return scene.h / points_per_edge(scene); }
+
+std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body) {
+  const double spacing = point_spacing(scene);
+  return {std::llround(body.size[0] / spacing), std::llround(body.size[1] / spacing)};
+}
+
+bool raise_top_to_cells(Scene& scene) {
+  if (is_multiple(scene.domain[1], scene.h)) return false;
+  // 12 digits: 0.575, not 0.5750000000000001
+  scene.domain[1] = std::stod(number(std::ceil(scene.domain[1] / scene.h) * scene.h, 12));
+  return true;
+}
+
+void validate(const Scene& scene) {
+  check_numbers(scene);
+  check_cells(scene);
+  check_geometry(scene);
+  check_overlap(scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+}
+
+}  // namespace repose::mpm

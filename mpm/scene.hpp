@@ -1,0 +1,84 @@
+#pragma once
+/// \file
+/// A scene in memory: what a scene file says, SI units, nothing computed yet.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/registry.hpp"
+
+namespace repose::mpm {
+
+/// What happens at an edge of the box.
+struct Wall {
+  enum class Kind {
+    no_slip,   ///< velocity zero at the wall
+    slip,      ///< a plane of symmetry: no motion through it nor away from it, free motion along it
+    friction,  ///< unilateral Coulomb contact: no tension, |shear| <= friction × pressure
+    open,      ///< material that crosses leaves the simulation and is counted as outflow
+  };
+  Kind kind = Kind::slip;
+  double friction = 0.0;  ///< Coulomb coefficient, for Kind::friction
+};
+
+/// A block of one material at rest or in uniform motion.
+struct Body {
+  std::string name;
+  std::array<double, 2> origin{};    ///< lower left corner of the box [m]
+  std::array<double, 2> size{};      ///< [m]
+  std::array<double, 2> velocity{};  ///< initial velocity [m/s]
+  double spin = 0.0;                 ///< initial angular velocity about the body's centre [rad/s]
+  LawSpec law;
+  InitialConditions initial;
+  /// p grows with depth below the body's top; of `initial` only K0 (default 1) and ocr apply.
+  bool lithostatic = false;
+};
+
+enum class Kernel { quadratic, cubic };
+enum class Transfer { apic };
+
+struct Scene {
+  std::string name;
+  double end_time = 0.0;  ///< [s]
+  double gravity = 9.8;   ///< [m/s²], downwards
+  double tilt_deg = 0.0;  ///< turns gravity so that material flows towards +x: g (sin, −cos)
+
+  std::array<double, 2> domain{};  ///< box from (0, 0) to this corner [m]
+  Wall floor{Wall::Kind::no_slip};
+  Wall left{Wall::Kind::slip};
+  Wall right{Wall::Kind::slip};
+  Wall top{Wall::Kind::slip};
+
+  std::vector<Body> bodies;
+
+  double h = 0.0;           ///< cell size [m]
+  int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16
+  Kernel kernel = Kernel::cubic;
+  Transfer transfer = Transfer::apic;
+
+  double courant = 0.4;      ///< Δt = courant · h/(c + |v|), if dt is absent
+  std::optional<double> dt;  ///< fixed step [s]
+
+  double frame_interval = 0.0;   ///< [s]; 0: no frames
+  double series_interval = 0.0;  ///< [s]; 0: first and last row only
+};
+
+/// Distance between neighbouring points of a body at the start [m]: h/√points_per_cell.
+double point_spacing(const Scene& scene);
+
+/// Points of a body along x and y: its size over point_spacing(), which validate() has found whole.
+std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body);
+
+/// Raises the top edge of the box to the next whole cell if it stands on none (the paper's 0.56 m
+/// is 89.6 cells). Returns whether it did. The other edges stay: material rests against them.
+bool raise_top_to_cells(Scene& scene);
+
+/// Checks what no single value can tell: bodies inside the box and not overlapping, h that divides
+/// the box, a square points_per_cell, laws that accept their parameters and initial state. Throws
+/// InputError whose key is a TOML path such as "grid.h", "body[0].size" or "body[1].law.kappa".
+void validate(const Scene& scene);
+
+}  // namespace repose::mpm

@@ -1,0 +1,111 @@
+#pragma once
+/// \file
+/// The Material Point Method simulation of one scene: explicit, plane strain, APIC.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "mpm/frame_writer.hpp"
+#include "mpm/scene.hpp"
+
+namespace repose::mpm {
+
+/// One row of series.csv, per metre of depth.
+struct SeriesRow {
+  double time_s, dt_s;
+  std::int64_t step;
+  double front_m;      ///< largest x with solid depth (column mass/ρ_0) >= 0.02 H_0
+  double front_max_m;  ///< largest x of any point
+  double height_m;     ///< solid depth at the left wall
+  double kinetic_J_per_m, potential_J_per_m, elastic_J_per_m;
+  double dissipated_J_per_m;       ///< by the material: stress work not stored
+  double transfer_loss_J_per_m;    ///< kinetic energy lost between points and grid (numerical)
+  double wall_loss_J_per_m;        ///< taken by the walls: impact and friction
+  double energy_residual_J_per_m;  ///< what the ledger does not account for (time integration)
+  double mass_kg_per_m;
+  double outflow_kg_per_m;          ///< mass that has left through open edges
+  double momentum_x, momentum_y;    ///< [kg m/s per m]
+  double density_min, density_max;  ///< [kg/m³]
+  std::int64_t points_separated;    ///< points that carry no stress
+};
+
+/// What a run will take, before it runs.
+struct Estimate {
+  std::int64_t points = 0;
+  std::int64_t live_cells = 0;  ///< at the start
+  double first_dt_s = 0.0;
+  double steps = 0.0;  ///< end_time over a typical step (fastest signal expected on the way)
+  double memory_MB = 0.0;
+  double seconds = 0.0;  ///< wall time with `threads`
+  std::vector<std::string> warnings;
+};
+
+/// Thrown where a run cannot go on: the step, time, point, reason and cause (input or solver) are
+/// in what(). The simulation is left as that step has made it, complete enough to be written out; a
+/// point whose stress could not be updated has moved and keeps the stress from before.
+class NumericalFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Simulation {
+ public:
+  /// Fills the bodies with points. `threads` <= 0: all cores. Throws InputError (see validate()).
+  explicit Simulation(const Scene& scene, int threads = 0);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  /// Advances one step, shortened to land exactly on `stop_at` [s]; none if that is not ahead.
+  /// Throws NumericalFailure.
+  void step(double stop_at);
+
+  const Scene& scene() const;
+  double time() const;  ///< [s]
+  std::int64_t steps() const;
+  std::int64_t point_count() const;
+  std::int64_t live_cells() const;   ///< cells that hold a point
+  double next_dt() const;            ///< the step that the next call would take, stops aside [s]
+  std::int64_t point_steps() const;  ///< points advanced so far, summed over steps
+
+  SeriesRow diagnostics() const;
+
+  /// Solid depth over x: column mass/ρ_0 per cell column.
+  struct Profile {
+    std::vector<double> x_m, depth_m;
+  };
+  Profile profile() const;
+
+  /// All points in a fixed order (their order of creation), for frames and pictures.
+  struct Snapshot {
+    std::vector<double> x_m, y_m, vx, vy, density, pressure_Pa, mises_Pa, sxx, syy, szz, sxy;
+    std::vector<std::int32_t> body;
+    FrameView view(double time_s) const;  ///< refers to this snapshot
+  };
+  Snapshot snapshot() const;
+
+  /// Things a user should know: a fixed step beyond a stability limit, wall corrections, ...
+  std::vector<std::string> warnings() const;
+  /// Figures for summary.json beyond the last row of the series.
+  struct Counters {
+    double dt_min_s, dt_max_s;
+    std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
+    std::int64_t sorts;
+    double memory_MB;  ///< of points and grid
+    int threads;
+  };
+  Counters counters() const;
+
+  /// Whole state to one HDF5 file and back; a resumed run gives the same bits as one never stopped.
+  void save(const std::filesystem::path& file) const;
+  void load(const std::filesystem::path& file);
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Points, cells, steps, memory and time of a scene, from a few measured steps (< 1 s).
+Estimate estimate(const Scene& scene, int threads = 0);
+
+}  // namespace repose::mpm

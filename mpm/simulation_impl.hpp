@@ -1,0 +1,96 @@
+#pragma once
+/// \file
+/// The state of a simulation and the stages of its step. Private to mpm/.
+
+#include <tbb/task_arena.h>
+
+#include "mpm/grid.hpp"
+#include "mpm/ledger.hpp"
+#include "mpm/simulation.hpp"
+#include "mpm/step_size.hpp"
+#include "mpm/walls.hpp"
+
+namespace repose::mpm {
+
+class Simulation::Impl {
+ public:
+  Impl(const Scene& scene, int threads);
+
+  void step(double stop_at);
+
+  // --- the algorithm box, one function per stage ---
+  void sort_if_needed();
+  double choose_step(double stop_at) const;
+  void points_to_grid();           ///< P2G: mass, momentum, internal force of every block's tile
+  void update_grid(double dt);     ///< sum tiles, accelerate nodes
+  void grid_to_points(double dt);  ///< G2P, move, update stress; throws NumericalFailure
+  void close_ledger();             ///< kinetic energies before and after; throws NumericalFailure
+
+  SeriesRow diagnostics();
+  /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.
+  struct Energies {
+    double kinetic = 0.0, potential = 0.0, elastic = 0.0;
+  };
+  Energies energies();
+  Signals initial_signals() const;
+
+  Scene scene;
+  std::array<double, 2> gravity{};
+  Walls walls;
+  std::vector<PointSet> bodies;
+  std::vector<std::string> body_names;
+  Grid grid;
+  mutable tbb::task_arena arena;
+  int threads;
+
+  double time = 0.0;
+  std::int64_t steps = 0;
+  std::int64_t point_steps = 0;
+  double last_dt = 0.0;
+  double dt_min = HUGE_VAL, dt_max = 0.0;
+  double drift = 0.0;  ///< bound on the way any point has gone since the last sort [m]
+  bool must_sort = true;
+  std::int64_t sorts = 0;
+  std::int64_t wall_corrections = 0;
+  double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
+  double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
+  double first_dt = 0.0;
+  Signals signals;
+  Ledger ledger;
+  double highest_energy = 0.0;  ///< what kinetic energy can never exceed [J/m]
+  double initial_height = 0.0;  ///< H_0: top of the highest body [m]
+
+ private:
+  struct BlockSums {
+    double kinetic = 0.0;
+    double work = 0.0;
+    double power = 0.0;
+    Signals signals;
+    std::int64_t corrections = 0;
+    bool outflow = false;
+    std::string failure;
+  };
+  template <class Kernel>
+  void transfer_to_tile(std::size_t block);
+  template <class Kernel>
+  void advance_block(std::size_t block, double dt, BlockSums& sums);
+  /// Adds a range's energies, work, power and signals after its update.
+  void sum_up(const PointSet& points, const Range& range, const Batch& batch, bool viscous,
+              BlockSums& sums) const;
+  void move(PointSet& points, const Range& range, double dt, BlockSums& sums) const;
+  void remove_outflow();
+  double initial_power() const;
+  /// −Vσ:L + mg·v of one point [W/m].
+  double power_of(const PointSet& points, std::size_t slot) const;
+  std::string describe(const PointSet& points, std::size_t body, std::size_t slot) const;
+
+  std::vector<BlockSums> block_sums_;
+  /// Kinetic energy of a block's nodes before and after forces, ΔtΣ(f + mg)·u.
+  struct NodeSums {
+    double before = 0.0, after = 0.0, impulse_work = 0.0;
+  };
+  std::vector<NodeSums> node_sums_;
+  WallEffect wall_effect_;
+};
+
+}  // namespace repose::mpm

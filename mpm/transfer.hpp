@@ -1,0 +1,31 @@
+#pragma once
+/// \file
+/// The two transfers of the affine particle-in-cell method (APIC, Jiang et al. 2015) with the
+/// affine field as velocity gradient and its adjoint as force (moving least squares MPM, Hu et al.
+/// 2018):
+///   m_i = Σ w m_p,   p_i = Σ w m_p (v_p + L_p (x_i − x_p)),
+///   f_i = −Σ w V_p D⁻¹ σ_p (x_i − x_p),                      D = h²/4 (quadratic), h²/3 (cubic)
+///   v_p = Σ w v_i,   L_p = Σ w v_i (x_i − x_p)ᵀ D⁻¹.
+
+#include "mpm/grid.hpp"
+#include "mpm/kernel.hpp"
+
+namespace repose::mpm {
+
+/// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
+/// node. The momentum is that before forces; forces are kept apart for the energy ledger.
+template <class Kernel>
+void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
+                    Tile& tile);
+
+/// Velocity at the nodes of a tile.
+struct VelocityTile {
+  std::array<double, tile_nodes> vx, vy;
+};
+
+/// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY).
+template <class Kernel>
+void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
+                    const Range& range, PointSet& points);
+
+}  // namespace repose::mpm

@@ -1,0 +1,260 @@
+#include "mpm/vtkhdf.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include <hdf5.h>
+
+namespace repose::mpm {
+
+namespace {
+
+// VTK's cell type of a single point (vtkCellType.h: VTK_VERTEX).
+constexpr std::uint8_t vtk_vertex = 1;
+
+/// Keeps HDF5 from printing its error stack while it is in scope; errors become exceptions here.
+class SilentErrors {
+ public:
+  SilentErrors() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  SilentErrors(const SilentErrors&) = delete;
+  SilentErrors& operator=(const SilentErrors&) = delete;
+  ~SilentErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+/// The innermost message of HDF5's error stack: the cause, not the call chain.
+std::string hdf5_reason() {
+  std::string reason;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned depth, const H5E_error2_t* error, void* out) -> herr_t {
+        if (depth == 0 && error->desc) *static_cast<std::string*>(out) = error->desc;
+        return 0;
+      },
+      &reason);
+  return reason.empty() ? "unknown HDF5 error" : reason;
+}
+
+[[noreturn]] void fail(std::string_view doing) {
+  throw std::runtime_error("HDF5 could not " + std::string(doing) + ": " + hdf5_reason());
+}
+
+void check(herr_t status, std::string_view doing) {
+  if (status < 0) fail(doing);
+}
+
+/// An HDF5 identifier, closed by the function that belongs to its kind.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle(hid_t id, Close close, std::string_view doing) : id_(id), close_(close) {
+    if (id < 0) fail(doing);
+  }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  ~Handle() { close_(id_); }
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  Close close_;
+};
+
+template <typename T>
+hid_t type_of() {
+  if constexpr (std::is_same_v<T, double>) {
+    return H5T_NATIVE_DOUBLE;
+  } else if constexpr (std::is_same_v<T, std::int64_t>) {
+    return H5T_NATIVE_INT64;
+  } else if constexpr (std::is_same_v<T, std::int32_t>) {
+    return H5T_NATIVE_INT32;
+  } else {
+    static_assert(std::is_same_v<T, std::uint8_t>);
+    return H5T_NATIVE_UINT8;
+  }
+}
+
+/// A dataset of rows × components values, row by row; components 1 makes it one-dimensional.
+template <typename T>
+void write_dataset(hid_t group, const std::string& name, std::span<const T> values,
+                   std::size_t components = 1) {
+  const std::array<hsize_t, 2> size{values.size() / components, components};
+  const Handle space(H5Screate_simple(components == 1 ? 1 : 2, size.data(), nullptr), H5Sclose,
+                     "describe " + name);
+  const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "describe " + name);
+  check(H5Pset_obj_track_times(properties, false), "describe " + name);
+  const Handle set(
+      H5Dcreate2(group, name.c_str(), type_of<T>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
+      H5Dclose, "create " + name);
+  check(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "write " + name);
+}
+
+Handle create_group(hid_t parent, const char* name) {
+  const Handle properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose, "describe a group");
+  check(H5Pset_obj_track_times(properties, false), "describe a group");
+  return {H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT), H5Gclose,
+          std::string("create group ") + name};
+}
+
+/// The two attributes by which VTK knows the layout. The type must be a fixed-length ASCII string.
+void write_layout(hid_t root) {
+  const std::array<std::int64_t, 2> version{1, 0};
+  const hsize_t two = 2;
+  const Handle pair(H5Screate_simple(1, &two, nullptr), H5Sclose, "describe Version");
+  const Handle number(H5Acreate2(root, "Version", H5T_NATIVE_INT64, pair, H5P_DEFAULT, H5P_DEFAULT),
+                      H5Aclose, "create Version");
+  check(H5Awrite(number, H5T_NATIVE_INT64, version.data()), "write Version");
+
+  constexpr std::string_view kind = "UnstructuredGrid";
+  const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, "describe Type");
+  const Handle text(H5Tcopy(H5T_C_S1), H5Tclose, "describe Type");
+  check(H5Tset_size(text, kind.size()), "describe Type");
+  check(H5Tset_strpad(text, H5T_STR_NULLPAD), "describe Type");
+  const Handle type(H5Acreate2(root, "Type", text, scalar, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                    "create Type");
+  check(H5Awrite(type, text, kind.data()), "write Type");
+}
+
+/// Columns side by side, row by row; an empty column stands for zeros.
+std::vector<double> interleave(std::size_t rows, std::span<const std::span<const double>> columns) {
+  std::vector<double> table(rows * columns.size(), 0.0);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (std::size_t i = 0; i < columns[c].size(); ++i)
+      table[i * columns.size() + c] = columns[c][i];
+  return table;
+}
+
+void write_columns(hid_t group, const std::string& name, std::size_t rows,
+                   std::initializer_list<std::span<const double>> columns) {
+  const std::vector<double> table =
+      interleave(rows, std::span<const std::span<const double>>(columns.begin(), columns.size()));
+  write_dataset<double>(group, name, table, columns.size());
+}
+
+/// One vertex cell per point: cell i is made of point i alone.
+void write_cells(hid_t root, std::size_t n) {
+  std::vector<std::int64_t> count_up(n + 1);
+  std::iota(count_up.begin(), count_up.end(), std::int64_t{0});
+  const std::span<const std::int64_t> offsets(count_up);
+  // VTKHDF allows several partitions; ours is one, hence the one-element counts.
+  const std::array<std::int64_t, 1> count{static_cast<std::int64_t>(n)};
+  write_dataset<std::int64_t>(root, "NumberOfPoints", count);
+  write_dataset<std::int64_t>(root, "NumberOfCells", count);
+  write_dataset<std::int64_t>(root, "NumberOfConnectivityIds", count);
+  write_dataset<std::int64_t>(root, "Connectivity", offsets.first(n));
+  write_dataset<std::int64_t>(root, "Offsets", offsets);
+  write_dataset<std::uint8_t>(root, "Types", std::vector<std::uint8_t>(n, vtk_vertex));
+}
+
+void write_fields(hid_t group, const FrameView& frame) {
+  const std::size_t n = frame.x_m.size();
+  for (const auto& field : frame.scalars) write_dataset<double>(group, field.name, field.values);
+  for (const auto& field : frame.vectors)
+    write_columns(group, field.name, n, {field.x, field.y, {}});
+  for (const auto& field : frame.tensors)
+    write_columns(group, field.name, n, {field.xx, field.yy, field.zz, field.xy, {}, {}});
+  for (const auto& field : frame.integers)
+    write_dataset<std::int32_t>(group, field.name, field.values);
+}
+
+/// Collects the rules of FrameView, so that every kind of field is held to the same ones.
+class Rules {
+ public:
+  explicit Rules(std::size_t points) : points_(points) {}
+
+  void check_name(const std::string& name) {
+    const bool unfit = std::any_of(name.begin(), name.end(), [](char c) {
+      return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+    });
+    if (name.empty() || name == "." || unfit)
+      throw std::invalid_argument("frame: '" + name + "' cannot be the name of a field");
+    if (!names_.insert(name).second)
+      throw std::invalid_argument("frame: two fields are called '" + name + "'");
+  }
+  void check_size(const std::string& name, std::size_t size) const {
+    if (size != points_)
+      throw std::invalid_argument("frame: " + name + " has " + std::to_string(size) +
+                                  " values for " + std::to_string(points_) + " points");
+  }
+
+ private:
+  std::size_t points_;
+  std::set<std::string> names_;
+};
+
+void check_view(const FrameView& frame) {
+  if (frame.x_m.empty()) throw std::invalid_argument("frame: it has no points");
+  if (!std::isfinite(frame.time_s))
+    throw std::invalid_argument("frame: its time is " + std::to_string(frame.time_s) + " s");
+  Rules rules(frame.x_m.size());
+  rules.check_size("y_m", frame.y_m.size());
+  for (const auto& field : frame.scalars) {
+    rules.check_name(field.name);
+    rules.check_size(field.name, field.values.size());
+  }
+  for (const auto& field : frame.vectors) {
+    rules.check_name(field.name);
+    for (const auto& part : {field.x, field.y}) rules.check_size(field.name, part.size());
+  }
+  for (const auto& field : frame.tensors) {
+    rules.check_name(field.name);
+    for (const auto& part : {field.xx, field.yy, field.zz, field.xy})
+      rules.check_size(field.name, part.size());
+  }
+  for (const auto& field : frame.integers) {
+    rules.check_name(field.name);
+    rules.check_size(field.name, field.values.size());
+  }
+}
+
+/// A file that lives in memory only (HDF5's core driver without a backing store).
+Handle create_in_memory(hid_t access) {
+  constexpr std::size_t growth = std::size_t{1} << 20;
+  check(H5Pset_fapl_core(access, growth, false), "set up memory");
+  // HDF5 first tries to load a file of this name, so it is one that cannot exist.
+  return {H5Fcreate("/dev/null/frame", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+          "create the frame"};
+}
+
+std::string image_of(hid_t file) {
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL), "finish the frame");
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) fail("measure the frame");
+  std::string image(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, image.data(), image.size()) < 0) fail("copy the frame");
+  return image;
+}
+
+}  // namespace
+
+std::string vtkhdf_image(const FrameView& frame) {
+  check_view(frame);
+  const SilentErrors silent;
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "set up memory");
+  const Handle file = create_in_memory(access);
+  {
+    const Handle root = create_group(file, "VTKHDF");
+    write_layout(root);
+    write_columns(root, "Points", frame.x_m.size(), {frame.x_m, frame.y_m, {}});
+    write_cells(root, frame.x_m.size());
+    const Handle fields = create_group(root, "PointData");
+    write_fields(fields, frame);
+    // ParaView shows it as the data's time even for a frame opened by itself.
+    const Handle whole = create_group(root, "FieldData");
+    write_dataset<double>(whole, "TimeValue", std::span<const double>(&frame.time_s, 1));
+  }
+  return image_of(file);
+}
+
+}  // namespace repose::mpm

@@ -1,0 +1,43 @@
+#pragma once
+/// \file
+/// Boundary conditions by ghost nodes with mirrored values.
+///
+/// A wall lies on a line of nodes b; a is the ghost node behind it and c the first node inside.
+/// With a velocity component odd (v_a = −v_c, v_b = 0) its spline vanishes on the wall itself; even
+/// (v_a = v_c), its normal derivative does. The mass and momentum that points put on a are those of
+/// their mirror image on c: m = m_c + m_a, m v_c = m_c v_c ± m_a v_a. The functions stay a
+/// partition of unity to the wall and lose no mass.
+///   slip:     normal odd, tangential even
+///   no slip:  both odd
+///   friction: free if nothing presses on the wall; else normal odd, tangential a mixture of even
+///   and
+///             odd with the share φ = min(1, friction J_n/J_t) of the impulse J_t that would stop
+///             it
+
+#include "mpm/grid.hpp"
+#include "mpm/scene.hpp"
+
+namespace repose::mpm {
+
+struct Walls {
+  Wall left, right, floor, top;
+};
+
+/// What the walls do to the motion of the nodes, per metre of depth.
+struct WallEffect {
+  double kinetic_before = 0.0;  ///< change of ½Σmu², velocities before forces [J]
+  double kinetic_after = 0.0;   ///< change of ½Σmv², velocities after forces [J]
+  double impulse_work = 0.0;  ///< change of ΔtΣ(f + mg)·u: what the forces do on u in one step [J]
+
+  WallEffect& operator+=(const WallEffect& other) {
+    kinetic_before += other.kinetic_before;
+    kinetic_after += other.kinetic_after;
+    impulse_work += other.impulse_work;
+    return *this;
+  }
+};
+
+/// Applies the walls to the node velocities before and after forces.
+WallEffect apply_walls(Grid& grid, const Walls& walls);
+
+}  // namespace repose::mpm

@@ -1,0 +1,103 @@
+#include "mpm/kernel.hpp"
+
+#include <array>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace repose::mpm {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+std::array<double, 4> values(const Row& row) {
+  std::array<double, 4> x{};
+  row.store_unaligned(x.data());
+  return x;
+}
+
+/// The B-splines written as their textbooks do, in the distance from the node.
+double spline(CubicKernel, double d) {
+  const double r = std::abs(d);
+  if (r < 1.0) return 2.0 / 3.0 - r * r + 0.5 * r * r * r;
+  return r < 2.0 ? (2.0 - r) * (2.0 - r) * (2.0 - r) / 6.0 : 0.0;
+}
+double spline(QuadraticKernel, double d) {
+  const double r = std::abs(d);
+  if (r < 0.5) return 0.75 - r * r;
+  return r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0;
+}
+
+template <class K>
+class KernelTest : public ::testing::Test {
+ protected:
+  /// Random positions on both sides of 0, and every place where the polynomials join.
+  static std::vector<double> positions() {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> anywhere(-5.0, 200.0);
+    std::vector<double> xi;
+    for (int k = 0; k < 2000; ++k) xi.push_back(anywhere(random));
+    for (const double joint : {-1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 7.0, 7.5, 8.0, 191.5, 192.0})
+      for (const double near : {joint, std::nextafter(joint, -9e9), std::nextafter(joint, 9e9)})
+        xi.push_back(near);
+    return xi;
+  }
+};
+using Kernels = ::testing::Types<CubicKernel, QuadraticKernel>;
+TYPED_TEST_SUITE(KernelTest, Kernels);
+
+TYPED_TEST(KernelTest, IsTheBSpline) {
+  for (const double xi : this->positions()) {
+    const Weights at = TypeParam::at(xi);
+    const auto w = values(at.w);
+    for (int k = 0; k < stencil_width; ++k) {
+      const double d = at.base + k - xi;
+      const double expected = k < TypeParam::rows ? spline(TypeParam{}, d) : 0.0;
+      // four products of size <= 1 and the rounding of ξ − cell: 8 eps
+      EXPECT_NEAR(w[static_cast<std::size_t>(k)], expected, 8 * eps) << "xi = " << xi;
+    }
+  }
+}
+
+TYPED_TEST(KernelTest, MomentsOfOrderZeroToTwo) {
+  for (const double xi : this->positions()) {
+    const Weights at = TypeParam::at(xi);
+    const auto w = values(at.w);
+    const auto d = values(at.d);
+    double unity = 0.0, first = 0.0, second = 0.0;
+    for (std::size_t k = 0; k < TypeParam::rows; ++k) {
+      unity += w[k];
+      first += w[k] * d[k];
+      second += w[k] * d[k] * d[k];
+    }
+    // sums of four terms of size <= |d|^n, |d| <= 2, each off by a few eps
+    EXPECT_NEAR(unity, 1.0, 4 * eps) << "xi = " << xi;
+    EXPECT_NEAR(first, 0.0, 8 * eps) << "xi = " << xi;
+    EXPECT_NEAR(second * TypeParam::inverse_moment, 1.0, 16 * TypeParam::inverse_moment * eps)
+        << "xi = " << xi;
+  }
+}
+
+TYPED_TEST(KernelTest, PositiveAndTheIdleLaneIsZero) {
+  for (const double xi : this->positions()) {
+    const auto w = values(TypeParam::at(xi).w);
+    // at the end of its support a weight is a sum of terms <= 1 that cancel: ± 2 eps
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_GE(w[k], -2 * eps) << "xi = " << xi;
+    if (TypeParam::rows == 3) {
+      EXPECT_EQ(w[3], 0.0);
+    }
+  }
+}
+
+TYPED_TEST(KernelTest, StencilHoldsTheWholeSupport) {
+  // (rows + 1)/2 nodes to either side at most: what the tile's margins are made for
+  for (const double xi : this->positions()) {
+    const int base = TypeParam::at(xi).base;
+    EXPECT_LE(base, xi - 0.5 * (TypeParam::rows - 2) + eps * 200);
+    EXPECT_GE(base, xi - 0.5 * TypeParam::rows - eps * 200);
+  }
+}
+
+}  // namespace
+}  // namespace repose::mpm

@@ -1,0 +1,113 @@
+#pragma once
+/// \file
+/// The transfers written as their formulas stand in a paper: one point at a time, nodes in a map,
+/// no blocks, tiles or lanes. Slow, and independent of the solver it checks.
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "mpm/scene.hpp"
+
+namespace repose::mpm::reference {
+
+using Vector = std::array<double, 2>;
+using Matrix = std::array<std::array<double, 2>, 2>;  ///< [row][column]
+
+/// What a point hands to the grid; L and stress need no symmetry.
+struct Particle {
+  Vector x{}, v{};
+  Matrix L{}, stress{};
+  double mass = 0.0, volume = 0.0;
+  Vector body_force{};  ///< per mass
+};
+
+/// The same seen in a mirror: positions by R, vectors by S (both diagonal, ±1) about `origin`.
+inline Particle image(const Particle& p, const Vector& R, const Vector& S, const Vector& origin) {
+  Particle q = p;
+  for (std::size_t i = 0; i < 2; ++i) {
+    q.x[i] = origin[i] + R[i] * (p.x[i] - origin[i]);
+    q.v[i] = S[i] * p.v[i];
+    q.body_force[i] = S[i] * p.body_force[i];
+    for (std::size_t j = 0; j < 2; ++j) {
+      q.L[i][j] = S[i] * p.L[i][j] * R[j];
+      q.stress[i][j] = S[i] * p.stress[i][j] * R[j];
+    }
+  }
+  return q;
+}
+
+struct Node {
+  double m = 0.0;
+  Vector momentum{}, force{};
+  Vector velocity{};  ///< for gather()
+};
+
+class Grid {
+ public:
+  Grid(double h, Kernel kernel) : h_(h), kernel_(kernel) {}
+
+  /// m_i += w m, p_i += w m (v + L d), f_i += w (m b − V D⁻¹ σ d),  d = x_i − x
+  void scatter(const Particle& p) {
+    for_each_weight(p.x, [&](Node& node, double w, const Vector& d) {
+      node.m += w * p.mass;
+      for (std::size_t i = 0; i < 2; ++i) {
+        node.momentum[i] += w * p.mass * (p.v[i] + p.L[i][0] * d[0] + p.L[i][1] * d[1]);
+        node.force[i] +=
+            w * (p.mass * p.body_force[i] -
+                 p.volume / moment() * (p.stress[i][0] * d[0] + p.stress[i][1] * d[1]));
+      }
+    });
+  }
+
+  /// v_i = (p_i + Δt f_i)/m_i
+  void advance(double dt) {
+    for (auto& [place, node] : nodes)
+      for (std::size_t i = 0; i < 2; ++i)
+        node.velocity[i] = node.m > 0.0 ? (node.momentum[i] + dt * node.force[i]) / node.m : 0.0;
+  }
+
+  /// v = Σ w v_i, L = D⁻¹ Σ w v_i dᵀ
+  void gather(const Vector& x, Vector& v, Matrix& L) {
+    v = {};
+    L = {};
+    for_each_weight(x, [&](const Node& node, double w, const Vector& d) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        v[i] += w * node.velocity[i];
+        for (std::size_t j = 0; j < 2; ++j) L[i][j] += w * node.velocity[i] * d[j] / moment();
+      }
+    });
+  }
+
+  double moment() const { return h_ * h_ / (kernel_ == Kernel::cubic ? 3.0 : 4.0); }
+
+  std::map<std::pair<int, int>, Node> nodes;
+
+ private:
+  double weight(double d) const {
+    const double r = std::abs(d);
+    if (kernel_ == Kernel::cubic) {
+      if (r < 1.0) return 2.0 / 3.0 - r * r + 0.5 * r * r * r;
+      return r < 2.0 ? (2.0 - r) * (2.0 - r) * (2.0 - r) / 6.0 : 0.0;
+    }
+    if (r < 0.5) return 0.75 - r * r;
+    return r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0;
+  }
+
+  template <class F>
+  void for_each_weight(const Vector& x, F&& f) {
+    const int i0 = static_cast<int>(std::floor(x[0] / h_));
+    const int j0 = static_cast<int>(std::floor(x[1] / h_));
+    for (int j = j0 - 1; j <= j0 + 2; ++j)
+      for (int i = i0 - 1; i <= i0 + 2; ++i) {
+        const double w = weight(i - x[0] / h_) * weight(j - x[1] / h_);
+        if (w > 0.0) f(nodes[{i, j}], w, Vector{i * h_ - x[0], j * h_ - x[1]});
+      }
+  }
+
+  double h_;
+  Kernel kernel_;
+};
+
+}  // namespace repose::mpm::reference

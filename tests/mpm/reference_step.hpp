@@ -1,0 +1,118 @@
+#pragma once
+/// \file
+/// A whole step of the method in its plainest form, to hold the solver against: no blocks, no
+/// drift, no ghost conditions. A wall that mirrors is what it says: every point has an image behind
+/// it, and the images are points like any other.
+
+#include <functional>
+#include <memory>
+#include <numbers>
+
+#include "mpm/points.hpp"
+#include "tests/mpm/reference_grid.hpp"
+#include "tests/mpm/saved_state.hpp"
+
+namespace repose::mpm::reference {
+
+/// The points of a scene and their laws; starts where `simulation` stands.
+class Model {
+ public:
+  explicit Model(const Simulation& simulation)
+      : scene_(simulation.scene()),
+        points_(points_of(simulation)) {
+    for (const Body& body : scene_.bodies) materials_.push_back(make_material(body.law));
+    const double angle = scene_.tilt_deg * std::numbers::pi / 180.0;
+    gravity_ = {scene_.gravity * std::sin(angle), -scene_.gravity * std::cos(angle)};
+  }
+  const std::vector<PointState>& points() const { return points_; }
+
+  void step(double dt) {
+    Grid grid(scene_.h, scene_.kernel);
+    for (const PointState& point : points_) scatter_with_images(grid, point);
+    grid.advance(dt);
+    for (PointState& point : points_) {
+      Vector v;
+      Matrix L;
+      grid.gather({point[X], point[Y]}, v, L);
+      for (std::size_t i = 0; i < 2; ++i) {
+        point.field[VX + i] = v[i];
+        point.field[X + i] += dt * v[i];
+        for (std::size_t j = 0; j < 2; ++j) point.field[LXX + 2 * i + j] = L[i][j];
+      }
+      update_stress(point, dt);
+    }
+  }
+
+ private:
+  void scatter_with_images(Grid& grid, const PointState& point) const {
+    Particle p;
+    p.x = {point[X], point[Y]};
+    p.v = {point[VX], point[VY]};
+    p.L = {{{point[LXX], point[LXY]}, {point[LYX], point[LYY]}}};
+    p.stress = {{{point[SXX], point[SXY]}, {point[SXY], point[SYY]}}};
+    p.mass = point[MASS];
+    p.volume = point[MASS] / point[RHO];
+    p.body_force = gravity_;
+    // itself, its images in the walls across x, and the images of those in the walls across y
+    std::vector<Particle> row{p};
+    add_images(row, {scene_.left, scene_.right}, 0);
+    add_images(row, {scene_.floor, scene_.top}, 1);
+    for (const Particle& one : row) grid.scatter(one);
+  }
+
+  void add_images(std::vector<Particle>& row, const std::array<Wall, 2>& walls,
+                  std::size_t across) const {
+    const std::size_t n = row.size();
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (walls[side].kind == Wall::Kind::open) continue;
+      Vector R{1.0, 1.0}, origin{};
+      R[across] = -1.0;
+      if (side == 1) origin[across] = scene_.domain[across];
+      const Vector S = walls[side].kind == Wall::Kind::slip ? R : Vector{-1.0, -1.0};
+      for (std::size_t k = 0; k < n; ++k) row.push_back(image(row[k], R, S, origin));
+    }
+  }
+
+  void update_stress(PointState& point, double dt) const {
+    std::array<std::array<double, pack_size>, 5> motion{};
+    std::array<std::array<double, pack_size>, STATE + max_state> field{};
+    motion[0].fill(dt * point[LXX]);
+    motion[1].fill(dt * point[LYY]);
+    motion[3].fill(0.5 * dt * (point[LXY] + point[LYX]));
+    motion[4].fill(0.5 * dt * (point[LYX] - point[LXY]));
+    for (std::size_t f = 0; f < field.size(); ++f) field[f].fill(point[f]);
+    Batch batch;
+    batch.count = 1;
+    batch.dt = dt;
+    for (std::size_t k = 0; k < 4; ++k) batch.strain[k] = motion[k].data();
+    batch.spin = motion[4].data();
+    batch.density = field[RHO].data();
+    for (std::size_t k = 0; k < 4; ++k) batch.stress[k] = field[SXX + k].data();
+    for (std::size_t k = 0; k < max_state; ++k) batch.state[k] = field[STATE + k].data();
+    EXPECT_TRUE(materials_[point.body]->update(batch).ok());
+    for (std::size_t f = SXX; f < field.size(); ++f) point.field[f] = field[f][0];
+    // no looser than a grid can tell: 0.2 m/h²
+    point.field[RHO] = std::max(point[RHO], 0.2 * point[MASS] / (scene_.h * scene_.h));
+  }
+
+  Scene scene_;
+  std::vector<PointState> points_;
+  std::vector<std::shared_ptr<const Material>> materials_;
+  Vector gravity_{};
+};
+
+/// The largest difference of a field between two states of the same points, over its largest value.
+inline double difference(const std::vector<PointState>& a, const std::vector<PointState>& b,
+                         std::initializer_list<std::size_t> fields) {
+  double largest = 0.0, scale = 0.0;
+  EXPECT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+    for (const std::size_t f : fields) {
+      EXPECT_EQ(a[k].id, b[k].id);
+      largest = std::max(largest, std::abs(a[k][f] - b[k][f]));
+      scale = std::max(scale, std::abs(b[k][f]));
+    }
+  return scale > 0.0 ? largest / scale : largest;
+}
+
+}  // namespace repose::mpm::reference

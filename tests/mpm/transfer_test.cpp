@@ -1,0 +1,200 @@
+#include "mpm/transfer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/mpm/point_cloud.hpp"
+
+namespace repose::mpm {
+namespace {
+
+constexpr double h = 0.25;
+/// A block in the middle of nowhere and its tile.
+constexpr std::array<int, 2> first_cell{16, 8};
+constexpr std::array<int, 2> origin{first_cell[0] - tile_margin, first_cell[1] - tile_margin};
+
+template <class K>
+struct Named;
+template <>
+struct Named<CubicKernel> {
+  static constexpr Kernel kernel = Kernel::cubic;
+};
+template <>
+struct Named<QuadraticKernel> {
+  static constexpr Kernel kernel = Kernel::quadratic;
+};
+
+template <class K>
+class TransferTest : public ::testing::Test {
+ protected:
+  /// Points in the block and up to `drift` cells around it, its outermost corners included.
+  static PointSet points_near_block(double drift) {
+    const std::array<double, 2> from{(first_cell[0] - drift) * h, (first_cell[1] - drift) * h};
+    const std::array<double, 2> to{(first_cell[0] + block_nx + drift) * h,
+                                   (first_cell[1] + block_ny + drift) * h};
+    PointSet points = random_points(200, from, to, 11);
+    points.field[X][0] = points.field[X][1] = from[0];
+    points.field[X][2] = points.field[X][3] = to[0];
+    points.field[Y][0] = points.field[Y][2] = from[1];
+    points.field[Y][1] = points.field[Y][3] = to[1];
+    return points;
+  }
+  static Tile scattered(const PointSet& points) {
+    Tile tile;
+    for (auto& channel : tile) channel.fill(0.0);
+    points_to_tile<K>(points, {0, points.count}, h, origin, tile);
+    return tile;
+  }
+  static double x_of(std::size_t n) { return (origin[0] + static_cast<int>(n) % tile_stride) * h; }
+  static double y_of(std::size_t n) { return (origin[1] + static_cast<int>(n) / tile_stride) * h; }
+};
+using Kernels = ::testing::Types<CubicKernel, QuadraticKernel>;
+TYPED_TEST_SUITE(TransferTest, Kernels);
+
+// 200 terms of order one per node, in another order: 200 eps, times the largest |L|h or V σ D⁻¹h
+// of about 3/h.
+constexpr double round_off = 200 * 2.2e-16 * 12;
+
+TYPED_TEST(TransferTest, EveryTileEntryIsTheBruteForceSum) {
+  const PointSet points = this->points_near_block(0.999);
+  const Tile tile = this->scattered(points);
+  reference::Grid grid(h, Named<TypeParam>::kernel);
+  for (std::size_t s = 0; s < points.count; ++s) grid.scatter(particle(points, s));
+  for (std::size_t n = 0; n < tile_nodes; ++n) {
+    const auto at = grid.nodes.extract({origin[0] + static_cast<int>(n) % tile_stride,
+                                        origin[1] + static_cast<int>(n) / tile_stride});
+    const reference::Node node = at.empty() ? reference::Node{} : at.mapped();
+    EXPECT_NEAR(tile[T_MASS][n], node.m, round_off);
+    EXPECT_NEAR(tile[T_PX][n], node.momentum[0], round_off);
+    EXPECT_NEAR(tile[T_PY][n], node.momentum[1], round_off);
+    EXPECT_NEAR(tile[T_FX][n], node.force[0], round_off);
+    EXPECT_NEAR(tile[T_FY][n], node.force[1], round_off);
+    if (n % tile_stride >= static_cast<std::size_t>(tile_columns)) {
+      EXPECT_EQ(tile[T_MASS][n], 0.0) << "the idle lanes' room";
+    }
+  }
+  for (const auto& [place, node] : grid.nodes)
+    EXPECT_LT(node.m, round_off) << "outside the tile: " << place.first << ", " << place.second;
+}
+
+TYPED_TEST(TransferTest, ConservesMassMomentumAndAngularMomentum) {
+  const PointSet points = this->points_near_block(0.9);
+  const Tile tile = this->scattered(points);
+  const double D = reference::Grid(h, Named<TypeParam>::kernel).moment();
+  double mass = 0, px = 0, py = 0, spin = 0;
+  for (std::size_t s = 0; s < points.count; ++s) {
+    const reference::Particle p = particle(points, s);
+    mass += p.mass;
+    px += p.mass * p.v[0];
+    py += p.mass * p.v[1];
+    spin += p.mass * (p.x[0] * p.v[1] - p.x[1] * p.v[0] + D * (p.L[1][0] - p.L[0][1]));
+  }
+  double grid_mass = 0, grid_px = 0, grid_py = 0, grid_spin = 0;
+  for (std::size_t n = 0; n < tile_nodes; ++n) {
+    grid_mass += tile[T_MASS][n];
+    grid_px += tile[T_PX][n];
+    grid_py += tile[T_PY][n];
+    grid_spin += this->x_of(n) * tile[T_PY][n] - this->y_of(n) * tile[T_PX][n];
+  }
+  EXPECT_NEAR(grid_mass / mass, 1.0, 1e-12);
+  // sums of 200 m |v| of order one, and |x| of up to 6 in the moment
+  EXPECT_NEAR(grid_px, px, round_off);
+  EXPECT_NEAR(grid_py, py, round_off);
+  EXPECT_NEAR(grid_spin, spin, 6 * round_off);
+}
+
+// Σ f_i = 0, Σ x_i × f_i = 0 (σ symmetric), and the virial Σ f_i ⊗ x_i = −Σ V σ (Σ w d dᵀ = D).
+TYPED_TEST(TransferTest, InternalForcesAreBalanced) {
+  const PointSet points = this->points_near_block(0.9);
+  const Tile tile = this->scattered(points);
+  double fx = 0, fy = 0, torque = 0, xx = 0, yy = 0, xy = 0;
+  for (std::size_t n = 0; n < tile_nodes; ++n) {
+    const double x = this->x_of(n), y = this->y_of(n);
+    fx += tile[T_FX][n];
+    fy += tile[T_FY][n];
+    torque += x * tile[T_FY][n] - y * tile[T_FX][n];
+    xx += tile[T_FX][n] * x;
+    yy += tile[T_FY][n] * y;
+    xy += tile[T_FX][n] * y;
+  }
+  double virial_xx = 0, virial_yy = 0, virial_xy = 0;
+  for (std::size_t s = 0; s < points.count; ++s) {
+    const reference::Particle p = particle(points, s);
+    virial_xx -= p.volume * p.stress[0][0];
+    virial_yy -= p.volume * p.stress[1][1];
+    virial_xy -= p.volume * p.stress[0][1];
+  }
+  EXPECT_NEAR(fx, 0.0, round_off);
+  EXPECT_NEAR(fy, 0.0, round_off);
+  EXPECT_NEAR(torque, 0.0, 6 * round_off);
+  EXPECT_NEAR(xx, virial_xx, 6 * round_off);
+  EXPECT_NEAR(yy, virial_yy, 6 * round_off);
+  EXPECT_NEAR(xy, virial_xy, 6 * round_off);
+}
+
+// v = a + B x at the points, with L = B, is a + B x at the nodes, and comes back as it was.
+TYPED_TEST(TransferTest, ALinearFieldGoesToTheGridAndBackExactly) {
+  const double a[2] = {0.3, -0.7};
+  const double B[2][2] = {{0.4, -1.1}, {0.9, 0.2}};
+  PointSet points = this->points_near_block(0.999);
+  for (std::size_t s = 0; s < points.count; ++s) {
+    for (std::size_t i = 0; i < 2; ++i)
+      points[VX + i][s] = a[i] + B[i][0] * points[X][s] + B[i][1] * points[Y][s];
+    points[LXX][s] = B[0][0];
+    points[LXY][s] = B[0][1];
+    points[LYX][s] = B[1][0];
+    points[LYY][s] = B[1][1];
+  }
+  const Tile tile = this->scattered(points);
+  VelocityTile velocity;
+  for (std::size_t n = 0; n < tile_nodes; ++n) {
+    const double m = tile[T_MASS][n];
+    velocity.vx[n] = m > 0.0 ? tile[T_PX][n] / m : 0.0;
+    velocity.vy[n] = m > 0.0 ? tile[T_PY][n] / m : 0.0;
+    // |v| <= 10 here. A node that only sees the ends of supports (weight w) has terms of size w
+    // known to eps·1: relative eps/w. They are exact where they count: w > 1e-6.
+    if (m < 1e-6) continue;
+    const double x = this->x_of(n), y = this->y_of(n);
+    EXPECT_NEAR(velocity.vx[n], a[0] + B[0][0] * x + B[0][1] * y, 10 * 1e-9);
+    EXPECT_NEAR(velocity.vy[n], a[1] + B[1][0] * x + B[1][1] * y, 10 * 1e-9);
+  }
+  const PointSet before = points;
+  tile_to_points<TypeParam>(velocity, origin, h, {0, points.count}, points);
+  for (std::size_t s = 0; s < points.count; ++s) {
+    // 16 terms of size |v| <= 10, each known to a few eps: 1e-13; divided by h in the gradient
+    for (const Field f : {VX, VY}) EXPECT_NEAR(points[f][s], before[f][s], 1e-13);
+    for (const Field f : {LXX, LXY, LYX, LYY})
+      EXPECT_NEAR(points[f][s], before[f][s], 1e-13 * 4 / h);
+  }
+}
+
+// G2P against its formula, for a field that is anything.
+TYPED_TEST(TransferTest, GatherIsTheBruteForceSum) {
+  PointSet points = this->points_near_block(0.999);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> sign(-1.0, 1.0);
+  VelocityTile tile;
+  reference::Grid grid(h, Named<TypeParam>::kernel);
+  for (std::size_t n = 0; n < tile_nodes; ++n) {
+    tile.vx[n] = sign(random);
+    tile.vy[n] = sign(random);
+    grid.nodes[{origin[0] + static_cast<int>(n) % tile_stride,
+                origin[1] + static_cast<int>(n) / tile_stride}]
+        .velocity = {tile.vx[n], tile.vy[n]};
+  }
+  tile_to_points<TypeParam>(tile, origin, h, {0, points.count}, points);
+  for (std::size_t s = 0; s < points.count; ++s) {
+    reference::Vector v;
+    reference::Matrix L;
+    grid.gather({points[X][s], points[Y][s]}, v, L);
+    const double exact = 16 * 8 * 2.2e-16;  // 16 terms, weights known to 8 eps (kernel_test)
+    EXPECT_NEAR(points[VX][s], v[0], exact);
+    EXPECT_NEAR(points[VY][s], v[1], exact);
+    EXPECT_NEAR(points[LXX][s], L[0][0], exact * 8 / h);
+    EXPECT_NEAR(points[LXY][s], L[0][1], exact * 8 / h);
+    EXPECT_NEAR(points[LYX][s], L[1][0], exact * 8 / h);
+    EXPECT_NEAR(points[LYY][s], L[1][1], exact * 8 / h);
+  }
+}
+
+}  // namespace
+}  // namespace repose::mpm
