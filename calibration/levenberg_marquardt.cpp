@@ -1,0 +1,137 @@
+#include <chrono>
+#include <cmath>
+
+#include <Eigen/QR>
+
+#include "calibration/optimise.hpp"
+
+namespace repose::calibration {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Coordinates that may move: not held, and not pressed against a bound by the gradient.
+std::vector<Index> movable(const VectorXd& z, const VectorXd& g, const std::vector<bool>& fixed) {
+  std::vector<Index> free;
+  for (Index i = 0; i < z.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (k < fixed.size() && fixed[k]) continue;
+    if ((z[i] <= 0.0 && g[i] > 0.0) || (z[i] >= 1.0 && g[i] < 0.0)) continue;
+    free.push_back(i);
+  }
+  return free;
+}
+
+/// min ‖J_f d + r‖² + μ‖D d‖² by QR.
+VectorXd damped_step(const MatrixXd& J, const VectorXd& r, const VectorXd& scale,
+                     const std::vector<Index>& free, double mu) {
+  const auto n = static_cast<Index>(free.size());
+  MatrixXd A = MatrixXd::Zero(J.rows() + n, n);
+  VectorXd b = VectorXd::Zero(J.rows() + n);
+  b.head(J.rows()) = -r;
+  for (Index j = 0; j < n; ++j) {
+    const Index k = free[static_cast<std::size_t>(j)];
+    A.col(j).head(J.rows()) = J.col(k);
+    A(J.rows() + j, j) = std::sqrt(mu) * scale[k];
+  }
+  const VectorXd d = A.colPivHouseholderQr().solve(b);
+  VectorXd step = VectorXd::Zero(J.cols());
+  for (Index j = 0; j < n; ++j) step[free[static_cast<std::size_t>(j)]] = d[j];
+  return step;
+}
+
+}  // namespace
+
+Optimum levenberg_marquardt(const Problem& problem, const VectorXd& start,
+                            const OptimiseOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  Optimum best;
+  best.z = clipped(start);
+  Evaluation here, trial;
+  problem.evaluate(best.z, true, here);
+  best.gradients = 1;
+  best.objective = here.objective();
+  best.failed = here.failed;
+  const auto note = [&] {
+    best.trace.push_back({best.evaluations, best.gradients, seconds_since(begin), best.objective});
+  };
+  note();
+  VectorXd scale = VectorXd::Zero(best.z.size());
+  double mu = 1e-3, nu = 2.0;
+  best.why = "evaluations";
+  int small_steps = 0;
+  while (best.evaluations + best.gradients < options.max_evaluations) {
+    if (problem.interrupted()) {
+      best.why = "interrupted";
+      break;
+    }
+    const VectorXd g = here.J.transpose() * here.r;
+    // Marquardt's scale, never shrinking (Moré 1978), with a floor for coordinates without effect
+    scale = scale.cwiseMax(here.J.colwise().norm().transpose());
+    const double largest = scale.maxCoeff();
+    if (!(largest > 0.0) || !std::isfinite(largest)) {
+      best.why = largest == 0.0 ? "nothing depends on the parameters" : "error: not finite";
+      break;
+    }
+    const VectorXd D = scale.cwiseMax(1e-8 * largest);
+    const std::vector<Index> free = movable(best.z, g, options.fixed);
+    if (free.empty()) {
+      best.why = "converged";
+      break;
+    }
+    const VectorXd target = best.z + damped_step(here.J, here.r, D, free, mu);
+    const VectorXd z = clipped(target);
+    const VectorXd step = z - best.z;
+    const double moved = step.cwiseAbs().maxCoeff();
+    const double predicted = 0.5 * (here.r.squaredNorm() - (here.r + here.J * step).squaredNorm());
+    if (moved < options.x_tolerance || !(predicted > 0.0)) {
+      // a step cut short at a bound may be small while others would move further: free them first
+      if (predicted > 0.0 || mu > 1e12 || ++small_steps > 3) {
+        best.why = "converged";
+        if (!(moved < options.x_tolerance)) best.why = "round-off";
+        break;
+      }
+      mu *= nu;
+      nu *= 2.0;
+      continue;
+    }
+    problem.evaluate(z, false, trial);
+    ++best.evaluations;
+    const double f = trial.objective();
+    const double gain = (best.objective - f) / predicted;
+    if (f < best.objective) {
+      const double drop = best.objective - f;
+      const double before = best.objective;
+      best.z = z;
+      problem.evaluate(z, true, here);
+      ++best.gradients;
+      best.objective = here.objective();
+      best.failed = here.failed;
+      note();
+      mu = std::max(1e-15, mu * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * gain - 1.0, 3.0)));
+      nu = 2.0;
+      if (drop <= options.f_tolerance * before && predicted <= options.f_tolerance * before) {
+        best.why = "converged";
+        break;
+      }
+    } else {
+      mu *= nu;
+      nu *= 2.0;
+      if (mu > 1e20) {
+        best.why = "round-off";
+        break;
+      }
+    }
+  }
+  best.seconds = seconds_since(begin);
+  note();
+  return best;
+}
+
+}  // namespace repose::calibration

@@ -1,0 +1,211 @@
+#include "calibration/problem.hpp"
+
+#include <cmath>
+
+namespace repose::calibration {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+Problem::Problem(ParameterSpace space, std::vector<Target> targets, bool balance)
+    : space_(std::move(space)),
+      targets_(std::move(targets)),
+      balance_(balance) {
+  lay_out();
+}
+
+Problem::Problem(const Problem& other)
+    : space_(other.space_),
+      targets_(other.targets_),
+      balance_(other.balance_),
+      interrupted_(other.interrupted_) {
+  lay_out();
+}
+
+void Problem::lay_out() {
+  blocks_.clear();
+  first_.assign(targets_.size(), -1);
+  penalty_.assign(targets_.size(), 0.0);
+  Index channels = 0;
+  data_rows_ = 0;
+  for (const Target& t : targets_) {
+    if (t.held_out) continue;
+    if (t.rows() == 0 || t.channels.empty())
+      throw InputError("target", t.name + ": no rows to fit");
+    if (!(t.weight > 0.0)) throw InputError("target", t.name + ": weight must be > 0");
+    for (const Channel& c : t.channels) {
+      if (c.observed.size() != t.rows())
+        throw InputError("target", t.name + ": " + c.name + " has another number of rows than x");
+      if (c.noise && !(*c.noise > 0.0))
+        throw InputError("target", t.name + ": the noise of " + c.name + " must be > 0");
+      if (!(c.weight > 0.0))
+        throw InputError("target", t.name + ": the weight of " + c.name + " must be > 0");
+    }
+    channels += static_cast<Index>(t.channels.size());
+    data_rows_ += t.count();
+  }
+  if (channels == 0) throw InputError("target", "every target is held out: nothing is fitted");
+  const double mean_rows = static_cast<double>(data_rows_) / static_cast<double>(channels);
+  Index row = 0;
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const Target& t = targets_[k];
+    if (t.held_out) continue;
+    first_[k] = row;
+    double range = 0.0;
+    for (std::size_t c = 0; c < t.channels.size(); ++c) {
+      const Channel& channel = t.channels[c];
+      const double share = balance_ ? mean_rows / static_cast<double>(t.rows()) : 1.0;
+      const double factor = std::sqrt(t.weight * channel.weight * share);
+      blocks_.push_back({k, c, row, t.rows(), factor});
+      const double spread = channel.observed.maxCoeff() - channel.observed.minCoeff();
+      const double relative = std::max(1.0, spread / scale_of(channel));
+      range += static_cast<double>(t.rows()) * factor * factor * relative * relative;
+      row += t.rows();
+    }
+    // a path that does not start costs ten times what a misfit by the whole range costs
+    penalty_[k] = std::sqrt(10.0 * range);
+    ++row;
+  }
+  size_ = row + static_cast<Index>(space_.prior_count());
+}
+
+void Problem::note_failure(std::string_view reason) const {
+  const std::lock_guard lock(mutex_);
+  ++failures_[std::string(reason)];
+}
+
+bool Problem::simulate(std::size_t k, const VectorXd& z, bool derivatives, Misfit& out,
+                       Response& response) const {
+  const Target& t = targets_[k];
+  const VectorXd values = space_.values(z);
+  std::vector<double> inputs = t.inputs;
+  std::vector<int> wanted;
+  for (const Binding& b : t.bindings) {
+    inputs[static_cast<std::size_t>(b.input)] = values[b.parameter];
+    if (derivatives) wanted.push_back(b.input);
+  }
+  paths_.fetch_add(1, std::memory_order_relaxed);
+  try {
+    t.simulator->simulate(inputs, wanted, response);
+  } catch (const std::exception&) {  // against the contract, but no reason to lose the fit
+    response = {};
+    response.y.resize(0, static_cast<Index>(t.channels.size()));
+    response.reason = "exception";
+    response.finished = 0.0;
+  }
+  misfit(t, response, out);
+  if (!out.finite) {
+    if (response.complete()) response.reason = "not_finite";
+    response.finished = 0.0;
+    out.r.setConstant(1.0);
+    out.slope.setZero();
+  }
+  return response.complete();
+}
+
+void Problem::target_residuals(std::size_t k, const VectorXd& z, Eigen::Ref<VectorXd> r, bool count,
+                               bool* failed) const {
+  Misfit m;
+  Response response;
+  const bool complete = simulate(k, z, false, m, response);
+  if (!complete && count) note_failure(response.reason);
+  if (!complete && failed != nullptr) *failed = true;
+  for (const Block& b : blocks_)
+    if (b.target == k)
+      r.segment(b.first, b.rows) =
+          b.factor * m.r.segment(static_cast<Index>(b.channel) * b.rows, b.rows);
+  r[first_[k] + targets_[k].count()] = penalty_[k] * (1.0 - response.finished);
+}
+
+void Problem::evaluate(const VectorXd& z_given, bool with_J, Evaluation& out) const {
+  const VectorXd z = clipped(z_given);
+  (with_J ? gradients_ : evaluations_).fetch_add(1, std::memory_order_relaxed);
+  const Index n = parameters();
+  out.r.setZero(size_);
+  out.failed = false;
+  if (with_J)
+    out.J.setZero(size_, n);
+  else
+    out.J.resize(0, 0);
+  MatrixXd slopes;
+  if (with_J) slopes = space_.slopes(z);
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const Target& t = targets_[k];
+    if (t.held_out) continue;
+    if (!with_J || !t.simulator->has_derivatives()) {
+      target_residuals(k, z, out.r, true, &out.failed);
+      if (!with_J) continue;
+    } else {
+      Misfit m;
+      Response response;
+      if (simulate(k, z, true, m, response)) {
+        MatrixXd map(static_cast<Index>(t.bindings.size()), n);
+        for (std::size_t b = 0; b < t.bindings.size(); ++b)
+          map.row(static_cast<Index>(b)) = slopes.row(t.bindings[b].parameter);
+        for (const Block& b : blocks_) {
+          if (b.target != k) continue;
+          const Index from = static_cast<Index>(b.channel) * b.rows;
+          out.r.segment(b.first, b.rows) = b.factor * m.r.segment(from, b.rows);
+          out.J.middleRows(b.first, b.rows) = b.factor * m.slope.middleRows(from, b.rows) * map;
+        }
+        continue;
+      }
+      target_residuals(k, z, out.r, true, &out.failed);
+    }
+    // no derivatives, or a path that broke off, whose end moves: differences in z, inwards at a
+    // bound
+    VectorXd a = out.r, b = out.r;
+    const Index first = first_[k], rows = t.count() + 1;
+    const double h = t.simulator->difference_step();
+    for (Index j = 0; j < n; ++j) {
+      bool matters = false;
+      for (const Binding& binding : t.bindings)
+        matters = matters || slopes(binding.parameter, j) != 0.0;
+      if (!matters) continue;
+      VectorXd up = z, down = z;
+      up[j] = std::min(1.0, z[j] + h);
+      down[j] = std::max(0.0, z[j] - h);
+      target_residuals(k, up, a, false, nullptr);
+      target_residuals(k, down, b, false, nullptr);
+      out.J.col(j).segment(first, rows) =
+          (a.segment(first, rows) - b.segment(first, rows)) / (up[j] - down[j]);
+    }
+  }
+  const auto priors = static_cast<Index>(space_.prior_count());
+  if (priors > 0) {
+    if (with_J) {
+      Eigen::Ref<MatrixXd> J = out.J.bottomRows(priors);
+      space_.priors(z, out.r.tail(priors), &J);
+    } else {
+      space_.priors(z, out.r.tail(priors), nullptr);
+    }
+  }
+}
+
+Misfit Problem::predict(std::size_t target, const VectorXd& z, Response* response) const {
+  Misfit m;
+  Response own;
+  simulate(target, clipped(z), false, m, response == nullptr ? own : *response);
+  return m;
+}
+
+Spent Problem::spent() const {
+  const std::lock_guard lock(mutex_);
+  return {evaluations_.load(), gradients_.load(), paths_.load(), failures_};
+}
+
+Problem Problem::with_observed(const std::vector<MatrixXd>& observed) const {
+  Problem copy(*this);
+  for (std::size_t k = 0; k < copy.targets_.size(); ++k)
+    for (std::size_t c = 0; c < copy.targets_[k].channels.size(); ++c) {
+      Channel& channel = copy.targets_[k].channels[c];
+      // the scale stays that of the data, so that residuals compare
+      if (!channel.noise) channel.noise = scale_of(channel);
+      channel.observed = observed[k].col(static_cast<Index>(c));
+    }
+  copy.lay_out();
+  return copy;
+}
+
+}  // namespace repose::calibration

@@ -1,0 +1,95 @@
+#pragma once
+/// \file
+/// A fit as one least-squares problem: residuals r(z) of all fitted targets and priors over the
+/// unit cube of the free parameters, objective ½ rᵀr, exact derivatives where the simulators have
+/// them.
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <mutex>
+
+#include "calibration/parameter_space.hpp"
+#include "calibration/target.hpp"
+
+namespace repose::calibration {
+
+/// r(z), layout: per fitted target its channels' rows and one penalty row, then the priors.
+struct Evaluation {
+  Eigen::VectorXd r;
+  Eigen::MatrixXd J;    ///< empty unless asked for
+  bool failed = false;  ///< a path broke off; r is finite all the same
+  double objective() const { return 0.5 * r.squaredNorm(); }
+};
+
+/// What was spent. Counted over all threads.
+struct Spent {
+  long evaluations = 0;                  ///< residual vectors
+  long gradients = 0;                    ///< residual vectors with derivatives
+  long paths = 0;                        ///< simulations of one target, with or without derivatives
+  std::map<std::string, long> failures;  ///< trials by reason
+};
+
+/// Where a channel's rows stand in r, and what multiplies its scaled residuals.
+struct Block {
+  std::size_t target = 0, channel = 0;
+  Eigen::Index first = 0, rows = 0;
+  double factor = 1.0;  ///< r = factor · (simulated − observed)/scale
+};
+
+class Problem {
+ public:
+  /// balance: every channel counts as if it had the mean number of rows, so that long tables do
+  /// not drown short ones; otherwise every row counts alike. Errors: InputError (key "target") if
+  /// nothing is fitted, a channel's length differs from x, weights or noise are not positive.
+  Problem(ParameterSpace space, std::vector<Target> targets, bool balance = true);
+
+  const ParameterSpace& space() const { return space_; }
+  const std::vector<Target>& targets() const { return targets_; }
+  Eigen::Index size() const { return size_; }  ///< residuals
+  Eigen::Index parameters() const { return static_cast<Eigen::Index>(space_.size()); }
+  const std::vector<Block>& blocks() const { return blocks_; }
+  /// Measured rows that are fitted.
+  Eigen::Index data_rows() const { return data_rows_; }
+
+  /// r and, if wanted, J at z; z is moved into the cube first (some algorithms leave it by a hair).
+  /// A path that breaks off gives a finite penalty that grows with its unfinished share, and is
+  /// counted by reason. Thread safe, never throws.
+  void evaluate(const Eigen::VectorXd& z, bool with_J, Evaluation& out) const;
+
+  /// Simulation of one target (fitted or held out) at z.
+  Misfit predict(std::size_t target, const Eigen::VectorXd& z, Response* response = nullptr) const;
+
+  Spent spent() const;
+  /// Every optimiser asks this before each trial and, if true, ends with its best point so far.
+  void interrupt_by(std::function<bool()> asked) { interrupted_ = std::move(asked); }
+  bool interrupted() const { return interrupted_ && interrupted_(); }
+
+  /// A copy with other measured values (bootstrap): observed[k] is rows × channels of target k.
+  Problem with_observed(const std::vector<Eigen::MatrixXd>& observed) const;
+
+  Problem(const Problem& other);
+  Problem& operator=(const Problem&) = delete;
+
+ private:
+  bool simulate(std::size_t k, const Eigen::VectorXd& z, bool derivatives, Misfit& out,
+                Response& response) const;
+  void target_residuals(std::size_t k, const Eigen::VectorXd& z, Eigen::Ref<Eigen::VectorXd> r,
+                        bool count, bool* failed) const;
+  void lay_out();
+  void note_failure(std::string_view reason) const;
+
+  ParameterSpace space_;
+  std::vector<Target> targets_;
+  bool balance_;
+  std::vector<Block> blocks_;
+  std::vector<Eigen::Index> first_;  ///< per target, −1 if held out
+  std::vector<double> penalty_;      ///< per target
+  Eigen::Index size_ = 0, data_rows_ = 0;
+  std::function<bool()> interrupted_;
+  mutable std::atomic<long> evaluations_{0}, gradients_{0}, paths_{0};
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, long> failures_;
+};
+
+}  // namespace repose::calibration

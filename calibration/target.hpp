@@ -1,0 +1,66 @@
+#pragma once
+/// \file
+/// One experiment of a fit: what was measured, what simulates it, and the residuals between both,
+/// always at the experiment's own points.
+
+#include <memory>
+#include <optional>
+
+#include "calibration/simulator.hpp"
+
+namespace repose::calibration {
+
+/// A measured quantity over the rows of its experiment.
+struct Channel {
+  std::string name;
+  Eigen::VectorXd observed;
+  std::optional<double> noise;  ///< standard deviation of the measurement, in the channel's unit
+  double weight = 1.0;
+};
+
+/// How a simulated curve meets the data.
+enum class Compare : std::uint8_t {
+  rows,         ///< the simulator's rows are the data's rows
+  interpolate,  ///< the simulated curve is read at the data's x (its x must run one way)
+  distance      ///< signed normal distance from each data point to the simulated curve, for
+                ///< softening and cyclic curves; axes scaled by the ranges of the data
+};
+
+/// A simulator's input that takes the value of a free parameter.
+struct Binding {
+  int input = 0;
+  int parameter = 0;
+};
+
+struct Target {
+  std::string name;
+  std::shared_ptr<const Simulator> simulator;
+  std::vector<double> inputs;  ///< of the simulator; those bound are replaced
+  std::vector<Binding> bindings;
+  std::string x_name;
+  Eigen::VectorXd x;  ///< rows
+  std::vector<Channel> channels;
+  double weight = 1.0;
+  bool held_out = false;  ///< predicted and scored, not fitted
+  Compare compare = Compare::rows;
+
+  Eigen::Index rows() const { return x.size(); }
+  /// Rows of all channels.
+  Eigen::Index count() const { return rows() * static_cast<Eigen::Index>(channels.size()); }
+};
+
+/// What a channel's residual is divided by: its noise, or the range of what was measured.
+double scale_of(const Channel& channel);
+
+/// Unweighted residuals of one simulation, channel after channel, in units of scale_of(); `slope`
+/// (rows × wanted inputs) if the response has derivatives. Rows that a broken-off path did not
+/// reach keep its last state, so that residuals stay continuous as the path grows.
+struct Misfit {
+  Eigen::VectorXd r;
+  Eigen::MatrixXd slope;
+  Eigen::MatrixXd simulated;  ///< rows × channels: the value each data point is compared with
+  bool finite = true;
+};
+void misfit(const Target& target, const Response& response, Misfit& out);
+
+}  // namespace repose::calibration

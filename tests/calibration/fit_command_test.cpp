@@ -1,0 +1,202 @@
+// `repose fit` from file to result: messages, fitted.toml, shards, resumption.
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "app/command_line.hpp"
+#include "app/fit_record.hpp"
+#include "app/read_law.hpp"
+#include "tests/calibration/twin.hpp"
+
+namespace repose::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class FitCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / fmt::format("repose_fit_{}_{}", info->name(), getpid());
+    fs::create_directories(folder_);
+    write("cu.csv", undrained_table());
+    write("fit.toml", fit_text());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Undrained compression of London clay in kPa and per cent: units come from the names.
+  static std::string undrained_table() {
+    calibration::Twin twin = calibration::cam_clay_twin("ln_v-ln_p");
+    const calibration::Target t = measure(twin, calibration::cam_clay_tests()[1]);
+    std::string text = "# made by the law itself\neps_a_percent,q_kPa,u_kPa\n";
+    for (Eigen::Index i = 0; i < t.x.size(); ++i)
+      text += fmt::format("{},{},{}\n", 100.0 * t.x[i], 1e-3 * t.channels[0].observed[i],
+                          1e-3 * t.channels[1].observed[i]);
+    return text;
+  }
+  static std::string fit_text() {
+    return R"([law]
+name = "modified_cam_clay"
+compression = "ln_v-ln_p"
+lambda = 0.161
+nu = 0.3
+Gamma = 2.759
+[fit]
+M = { lower = 0.4, upper = 1.8 }
+kappa = { lower = 0.02, upper = 0.15, scale = "log" }
+[[target]]
+data = "cu.csv"
+x = "eps_a"
+y = ["q_Pa", "u_Pa"]
+test = { kind = "triaxial", drainage = "undrained", axial_strain = 0.1 }
+initial = { p = 200e3, ocr = 1.0 }
+[solver]
+starts = 6
+)";
+  }
+  static std::string replaced(std::string text, const std::string& what, const std::string& by) {
+    const auto at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), by);
+  }
+
+  int command(std::vector<std::string> words) const {
+    words.insert(words.begin(), "repose");
+    words.push_back("--quiet");
+    std::vector<const char*> argv;
+    for (const std::string& w : words) argv.push_back(w.c_str());
+    return run_command_line(static_cast<int>(argv.size()), argv.data());
+  }
+
+  /// The complaint about a fit file.
+  std::string complaint(const std::string& text) const {
+    write("bad.toml", text);
+    try {
+      read_fit(path("bad.toml"), {}, 1);
+    } catch (const BadInput& error) {
+      const std::string all = error.what();
+      const auto at = all.find("bad.toml:");
+      return at == std::string::npos ? all : all.substr(at);
+    }
+    return "accepted";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(FitCommand, FindsTheParametersAndWritesALawThatReadsBack) {
+  ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("out")}), 0);
+  const auto report = nlohmann::json::parse(text_of(folder_ / "out/fit.json"));
+  // kPa with all digits: the table is exact to round-off, the path to 1e-8 per step
+  EXPECT_NEAR(report["parameters"]["M"]["value"].get<double>(), 0.888, 1e-6);
+  EXPECT_NEAR(report["parameters"]["kappa"]["value"].get<double>(), 0.062, 1e-6);
+  EXPECT_EQ(report["status"], "done");
+  EXPECT_EQ(report["optima"].size(), 1u);
+  EXPECT_TRUE(report["discrepancy"].empty());
+  InputFile law = InputFile::read(folder_ / "out/fitted.toml");
+  TomlReader root(law);
+  const LawSpec spec = read_law(root.table("law"));
+  law.throw_if_bad();
+  EXPECT_EQ(spec.values.at("M"), report["parameters"]["M"]["value"].get<double>());
+  EXPECT_EQ(spec.values.at("lambda"), 0.161);
+}
+
+TEST_F(FitCommand, ShardsMergeToTheSameResult) {
+  ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("whole")}), 0);
+  ASSERT_EQ(
+      command({"fit", path("fit.toml"), "-o", path("a"), "--starts-from", "0", "--starts-to", "2"}),
+      0);
+  ASSERT_EQ(
+      command({"fit", path("fit.toml"), "-o", path("b"), "--starts-from", "2", "--starts-to", "6"}),
+      0);
+  ASSERT_EQ(
+      command({"fit", path("fit.toml"), "-o", path("merged"), "--merge", path("a"), path("b")}), 0);
+  const auto whole = nlohmann::json::parse(text_of(folder_ / "whole/fit.json"));
+  const auto merged = nlohmann::json::parse(text_of(folder_ / "merged/fit.json"));
+  for (const char* key : {"parameters", "objective", "targets", "correlation", "optima",
+                          "singular_values_of_scaled_jacobian", "fingerprint"})
+    EXPECT_EQ(whole[key], merged[key]) << key;
+}
+
+TEST_F(FitCommand, ResumesAfterAKillInTheMiddleOfALine) {
+  ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("whole")}), 0);
+  // as a kill would leave it: two starts and a piece of the third
+  std::istringstream in(text_of(folder_ / "whole/starts.jsonl"));
+  std::string line, kept;
+  for (int i = 0; i < 3 && std::getline(in, line); ++i) kept += line + "\n";
+  std::getline(in, line);
+  fs::create_directories(folder_ / "killed");
+  write("killed/starts.jsonl", kept + line.substr(0, line.size() / 2));
+  ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("killed"), "--resume"}), 0);
+  const auto whole = nlohmann::json::parse(text_of(folder_ / "whole/fit.json"));
+  const auto again = nlohmann::json::parse(text_of(folder_ / "killed/fit.json"));
+  EXPECT_EQ(whole["parameters"], again["parameters"]);
+  EXPECT_EQ(again["counts"]["starts"], 6);
+  EXPECT_LT(again["counts"]["this_session"]["gradients"].get<long>(),
+            whole["counts"]["this_session"]["gradients"].get<long>());
+  // another fit's starts are refused
+  write("fit.toml", replaced(fit_text(), "upper = 1.8", "upper = 1.7"));
+  EXPECT_EQ(command({"fit", path("fit.toml"), "-o", path("killed"), "--resume"}), 2);
+}
+
+TEST_F(FitCommand, TellsWhatIsWrongAndWhere) {
+  const std::string good = fit_text();
+  ASSERT_EQ(complaint(good), "accepted");
+  EXPECT_EQ(complaint(replaced(good, "upper = 1.8", "upper = 0.3")),
+            "bad.toml:8:20: fit.M.upper = 0.3 must be > lower = 0.4");
+  EXPECT_EQ(complaint(replaced(good, "M = {", "MM = {")).find("bad.toml:"), 0u);
+  EXPECT_EQ(complaint(replaced(good, "x = \"eps_a\"", "x = \"epsa\"")).find("bad.toml:12:1: "), 0u);
+  EXPECT_NE(
+      complaint(replaced(good, "x = \"eps_a\"", "x = \"epsa\"")).find("did you mean 'eps_a'?"),
+      std::string::npos);
+  EXPECT_NE(complaint(replaced(good, "\"u_Pa\"", "\"v\""))
+                .find("has no column for v; its columns are eps_a_percent, q_kPa, u_kPa"),
+            std::string::npos);
+  EXPECT_NE(complaint(replaced(good, "starts = 6", "local = \"LD_SLSPQ\""))
+                .find("did you mean \"LD_SLSQP\"?"),
+            std::string::npos);
+  EXPECT_NE(complaint(replaced(good, "starts = 6", "local = \"GN_ISRES\""))
+                .find("solver.local: GN_ISRES is a global algorithm; it belongs to solver.global"),
+            std::string::npos);
+  EXPECT_NE(complaint(replaced(good, "nu = 0.3", "nu = 0.3\nM = 1.0"))
+                .find("M is fixed in [law] and free in [fit]: leave out one"),
+            std::string::npos);
+  EXPECT_NE(complaint(replaced(good, "axial_strain = 0.1", "axial_strain = 0.05"))
+                .find("is not on the way of the test, which leads from 0 to 0.05"),
+            std::string::npos);
+}
+
+TEST_F(FitCommand, KappaStaysBelowLambdaWhereBoundsOverlap) {
+  std::string text = replaced(fit_text(), "lambda = 0.161\n", "");
+  text = replaced(text, "kappa = { lower = 0.02, upper = 0.15, scale = \"log\" }",
+                  "kappa = { lower = 0.02, upper = 0.15 }\nlambda = { lower = 0.05, upper = 0.4 }");
+  write("fit.toml", text);
+  const FitFile file = read_fit(path("fit.toml"), {}, 1);
+  ASSERT_EQ(file.notes.size(), 1u);
+  EXPECT_EQ(file.notes[0], "kappa < lambda is kept by fitting kappa/lambda in [0.05, 0.999]");
+  const calibration::ParameterSpace space(file.free);
+  ASSERT_EQ(file.free[2].name, "kappa");
+  EXPECT_EQ(file.free[2].of, 1);
+}
+
+}  // namespace
+}  // namespace repose::app
