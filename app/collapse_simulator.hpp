@@ -1,0 +1,32 @@
+#pragma once
+/// \file
+/// A full simulation as a fit's simulator: the scene of `repose run`, one law, front and height
+/// over time or the final profile.
+
+#include <filesystem>
+#include <memory>
+
+#include "app/read_scene.hpp"
+#include "calibration/simulator.hpp"
+
+namespace repose::app {
+
+struct CollapseExperiment {
+  SceneFile scene;
+  LawSpec law;                        ///< replaces the law of every body; values come as inputs
+  std::vector<std::string> channels;  ///< columns of series.csv, or "depth_m" for the final profile
+  std::vector<double> times;          ///< of the data [s]; empty for the final profile
+  int threads = 1;
+  std::filesystem::path cache;  ///< folder of finished runs by hash of their input; empty: none
+};
+
+/// The columns of series.csv that a fit may compare.
+std::span<const std::string_view> collapse_channels();
+
+/// Rows stand exactly at the data's times (the step is cut to land there); x of the final profile
+/// is x_m. Inputs: the law's parameters. A run whose result lies in the cache is not repeated, so
+/// that a killed fit loses only the runs under way. Errors of a trial are reasons, never thrown;
+/// IoError for the cache.
+std::unique_ptr<calibration::Simulator> make_collapse_simulator(CollapseExperiment experiment);
+
+}  // namespace repose::app

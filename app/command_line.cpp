@@ -1,0 +1,169 @@
+#include "app/command_line.hpp"
+
+#include <algorithm>
+#include <new>
+#include <span>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/command.hpp"
+#include "app/input_file.hpp"
+#include "mpm/atomic_file.hpp"
+#include "repose_version.hpp"
+
+namespace repose::app {
+namespace {
+
+constexpr const char* overview =
+    "Granular and soil mechanics: drive a law at a point, fit it, run it in a collapse.";
+
+constexpr const char* examples =
+    "Examples:\n"
+    "  repose check data/scenes/flat_mu_i.toml      what the run will take\n"
+    "  repose run data/scenes/flat_mu_i.toml        run it; the result goes to results/flat_mu_i\n"
+    "  repose models mu_i                           the parameters of a law\n"
+    "\n"
+    "Exit codes: 0 done, 2 bad input, 3 numerical failure (state saved), 4 files, 130 "
+    "interrupted.\n"
+    "`repose VERB --help` tells about one verb.";
+
+/// All complaints go here, one per line, and with --json to the standard output as well.
+ExitCode complain(ExitCode code, const std::vector<std::string>& messages, bool json) {
+  for (const std::string& message : messages) fmt::print(stderr, "{}\n", message);
+  if (json)
+    fmt::print("{}\n",
+               nlohmann::ordered_json{
+                   {"event", "error"}, {"messages", messages}, {"exit", static_cast<int>(code)}}
+                   .dump());
+  return code;
+}
+
+ExitCode run(const Command& command) {
+  const bool json = command.options->json;
+  try {
+    return command.run();
+  } catch (const BadInput& error) {
+    return complain(ExitCode::bad_input, error.problems(), json);
+  } catch (const mpm::IoError& error) {
+    return complain(ExitCode::io_error, {error.what()}, json);
+  } catch (const std::bad_alloc&) {
+    return complain(
+        ExitCode::bad_input,
+        {"repose: not enough memory; a larger grid.h or fewer points_per_cell need less"}, json);
+  } catch (const std::exception& error) {
+    return complain(ExitCode::internal_error,
+                    {fmt::format("repose {}: internal error: {}", version_string, error.what())},
+                    json);
+  }
+}
+
+/// A verb or option that nearly was one.
+std::string suggestion(std::string_view word, const CLI::App& root, const CLI::App* verb) {
+  std::vector<std::string> known;
+  if (word.starts_with("-")) {
+    for (const CLI::App* app : {&root, verb})
+      if (app != nullptr)
+        for (const CLI::Option* option : app->get_options())
+          for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    word = word.substr(0, word.find('='));
+  } else {
+    for (const CLI::App* app : root.get_subcommands(nullptr)) known.push_back(app->get_name());
+  }
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  const std::string near = closest(word, views);
+  return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+}
+
+ExitCode misuse(const std::string& message, const CLI::App* verb) {
+  fmt::print(stderr, "repose: {}\n`repose {}--help` shows how it goes.\n", message,
+             verb == nullptr ? "" : verb->get_name() + " ");
+  return ExitCode::bad_input;
+}
+
+ExitCode parse_and_run(std::span<const char* const> arguments) {
+  CLI::App root(overview, "repose");
+  root.set_help_flag("-h,--help", "Show this and exit");
+  root.set_version_flag("--version", std::string("repose ") + version_string);
+  root.require_subcommand(1);
+  root.footer(examples);
+  root.get_formatter()->column_width(32);
+  const std::vector<Command> commands{add_run(root),   add_check(root), add_models(root),
+                                      add_point(root), add_chart(root), add_fit(root)};
+
+  if (arguments.size() < 2) {
+    fmt::print(stderr, "{}", root.help());
+    return ExitCode::bad_input;
+  }
+  const std::string_view first = arguments[1];
+  const auto is_first = [&](const Command& c) { return c.verb->get_name() == first; };
+  if (!first.starts_with("-") && std::none_of(commands.begin(), commands.end(), is_first))
+    return misuse(fmt::format("there is no verb '{}'{}", first, suggestion(first, root, nullptr)),
+                  nullptr);
+  try {
+    root.parse(static_cast<int>(arguments.size()), arguments.data());
+  } catch (const CLI::CallForVersion& version) {
+    fmt::print("{}\n", version.what());
+    return ExitCode::done;
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = root.get_subcommands();
+    fmt::print("{}", chosen.empty() ? root.help() : chosen.front()->help("repose"));
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = root.get_subcommands();
+    const CLI::App* verb = chosen.empty() ? nullptr : chosen.front();
+    const std::vector<std::string> extras = root.remaining(true);
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !extras.empty())
+      return misuse(fmt::format("'{}' was not expected{}", extras.front(),
+                                suggestion(extras.front(), root, verb)),
+                    verb);
+    return misuse(error.what(), verb);
+  }
+  for (const Command& command : commands)
+    if (command.verb->parsed()) return run(command);
+  return ExitCode::bad_input;
+}
+
+}  // namespace
+
+void add_set(CLI::App& verb, CommonOptions& options) {
+  verb.add_option("--set", options.sets,
+                  "Override a key of the file, as in --set grid.h=0.0125 or "
+                  "--set body[0].law.K=26e3; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_threads(CLI::App& verb, CommonOptions& options) {
+  verb.add_option("--threads", options.threads, "Threads to use (default: one per core)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096).description(""));
+}
+
+void add_quiet(CLI::App& verb, CommonOptions& options) {
+  verb.add_flag("--quiet", options.quiet, "Print nothing but errors");
+  verb.add_flag("--json", options.json, "Print JSON instead of text");
+}
+
+void add_run_options(CLI::App& verb, CommonOptions& options) {
+  verb.add_option("-o,--output", options.output, "Result folder (default: results/NAME)")
+      ->type_name("DIR");
+  add_set(verb, options);
+  add_threads(verb, options);
+  verb.add_option("--seed", options.seed, "Seed of random numbers, recorded with the result")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("N");
+  verb.add_flag("--resume", options.resume, "Continue from the checkpoint in the result folder");
+  add_quiet(verb, options);
+}
+
+int run_command_line(int argc, const char* const* argv) {
+  try {
+    return static_cast<int>(parse_and_run({argv, static_cast<std::size_t>(argc)}));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "repose {}: internal error: {}\n", version_string, error.what());
+    return static_cast<int>(ExitCode::internal_error);
+  }
+}
+
+}  // namespace repose::app

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/command.hpp"
+#include "app/file_kind.hpp"
+#include "app/progress.hpp"
+#include "app/read_fit.hpp"
+#include "app/read_point_test.hpp"
+#include "app/read_scene.hpp"
+#include "mpm/simulation.hpp"
+
+namespace repose::app {
+namespace {
+
+/// 12 345 678
+std::string grouped(double x) {
+  std::string digits = fmt::format("{:.0f}", x);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, " ");
+  return digits;
+}
+
+/// 2 significant digits: "about" figures must not look exact.
+double rounded(double x) { return std::stod(fmt::format("{:.1e}", x)); }
+
+ExitCode check_scene(InputFile& input, const CommonOptions& options) {
+  const SceneFile file = read_scene(input);
+  const mpm::Scene& scene = file.scene;
+  mpm::Estimate estimate;
+  try {
+    estimate = mpm::estimate(scene, options.threads);
+  } catch (const InputError& error) {
+    input.report(error);
+    input.throw_if_bad();
+  }
+  std::vector<std::string> warnings = file.notes;
+  warnings.insert(warnings.end(), estimate.warnings.begin(), estimate.warnings.end());
+  if (options.json) {
+    const nlohmann::ordered_json report{{"file", input.name()},
+                                        {"kind", "scene"},
+                                        {"name", scene.name},
+                                        {"points", estimate.points},
+                                        {"live_cells", estimate.live_cells},
+                                        {"first_dt_s", estimate.first_dt_s},
+                                        {"steps", estimate.steps},
+                                        {"memory_MB", estimate.memory_MB},
+                                        {"wall_s", estimate.seconds},
+                                        {"warnings", warnings}};
+    fmt::print("{}\n", report.dump());
+    return ExitCode::done;
+  }
+  if (!options.quiet)
+    fmt::print(
+        "{}: a sound scene, \"{}\"\n"
+        "  points      {}\n"
+        "  live cells  {} of {} x {} at the start\n"
+        "  first step  {:.3g} s{}\n"
+        "  steps       about {} for {:g} s\n"
+        "  memory      about {:.2g} MB\n"
+        "  run time    about {}\n",
+        input.name(), scene.name, grouped(static_cast<double>(estimate.points)),
+        grouped(static_cast<double>(estimate.live_cells)), std::lround(scene.domain[0] / scene.h),
+        std::lround(scene.domain[1] / scene.h), estimate.first_dt_s, scene.dt ? ", fixed" : "",
+        grouped(rounded(estimate.steps)), scene.end_time, estimate.memory_MB,
+        duration_text(estimate.seconds < 10.0 ? rounded(estimate.seconds) : estimate.seconds));
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  return ExitCode::done;
+}
+
+/// "modified_cam_clay, v-ln_p"
+std::string law_title(const LawSpec& law) {
+  const LawInfo& info = find_law(law);
+  return fmt::format("{}, {}", info.name, info.option);
+}
+
+ExitCode check_point_test(InputFile& input, const CommonOptions& options) {
+  const PointTestFile file = read_point_test(input);
+  if (!options.quiet)
+    fmt::print(
+        "{}: a sound point test, \"{}\"\n"
+        "  law          {}\n"
+        "  stages       {}\n"
+        "  integration  {}\n",
+        input.name(), file.name, law_title(file.law), file.test.path.legs.size(),
+        point::name_of(point::method_for(find_law(file.law), file.test.settings.method)));
+  return ExitCode::done;
+}
+
+ExitCode check_fit(const std::string& path, const CommonOptions& options) {
+  const FitFile file = read_fit(path, options.sets, options.seed);
+  if (!options.quiet)
+    fmt::print(
+        "{}: a sound fit, \"{}\"\n"
+        "  law              {}\n"
+        "  free parameters  {}\n"
+        "  targets          {}\n",
+        path, file.name, law_title(file.law), file.free.size(), file.targets.size());
+  for (const std::string& note : file.notes) fmt::print(stderr, "warning: {}\n", note);
+  return ExitCode::done;
+}
+
+ExitCode check_file(const std::string& path, const CommonOptions& options) {
+  InputFile input = InputFile::read(path, options.sets);
+  switch (kind_of(input)) {
+    case FileKind::scene:
+      return check_scene(input, options);
+    case FileKind::point_test:
+      return check_point_test(input, options);
+    case FileKind::fit:
+      return check_fit(path, options);
+  }
+  return ExitCode::bad_input;
+}
+
+}  // namespace
+
+Command add_check(CLI::App& root) {
+  CLI::App* verb =
+      root.add_subcommand("check", "Validate an input file, and tell what running it will take");
+  verb->footer(
+      "Examples:\n"
+      "  repose check data/scenes/flat_mu_i.toml\n"
+      "  repose check data/scenes/flat_mu_i.toml --set grid.h=0.003125\n"
+      "  repose check data/experiments/weald_clay_undrained.toml");
+  const auto options = std::make_shared<CommonOptions>();
+  const auto file = std::make_shared<std::string>();
+  verb->add_option("FILE.toml", *file, "Input file")->type_name("")->required();
+  add_set(*verb, *options);
+  add_threads(*verb, *options);
+  add_quiet(*verb, *options);
+  return {verb, options, [options, file] { return check_file(*file, *options); }};
+}
+
+}  // namespace repose::app

@@ -1,0 +1,281 @@
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include "app/commands/command.hpp"
+#include "app/fit_picture.hpp"
+#include "app/fit_record.hpp"
+#include "app/interrupt.hpp"
+#include "app/plot/gnuplot.hpp"
+#include "app/progress.hpp"
+#include "app/result_folder.hpp"
+#include "app/run_record.hpp"
+#include "repose_version.hpp"
+
+namespace repose::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What `repose fit` takes beyond the common options.
+struct FitArguments {
+  std::string file;
+  int starts_from = 0;
+  int starts_to = -1;
+  std::vector<std::string> merge;
+};
+
+constexpr std::string_view journal_name = "starts.jsonl";
+
+class FitRun {
+ public:
+  FitRun(const FitArguments& arguments, const CommonOptions& options)
+      : arguments_(arguments),
+        options_(options),
+        output_(options.output.empty() ? ResultFolder::default_path(
+                                             std::filesystem::path(arguments.file).stem().string())
+                                       : std::filesystem::path(options.output)),
+        file_(read_fit(arguments.file, options.sets, options.seed, output_ / "runs")),
+        problem_(calibration::ParameterSpace(file_.free), file_.targets, file_.balance),
+        folder_(output_) {
+    file_.options.starts_from = arguments.starts_from;
+    file_.options.starts_to = arguments.starts_to;
+    const int to = arguments.starts_to < 0 ? file_.options.starts : arguments.starts_to;
+    if (arguments.starts_from >= to || to > file_.options.starts)
+      throw BadInput(
+          {fmt::format("--starts-from {} --starts-to {}: this fit has starts 0 to {}, and "
+                       "--starts-to is the first one that is left out",
+                       arguments.starts_from, arguments.starts_to, file_.options.starts)});
+  }
+
+  ExitCode run() {
+    std::vector<calibration::StartResult> done;
+    for (const std::string& dir : arguments_.merge) {
+      const std::filesystem::path journal = std::filesystem::path(dir) / journal_name;
+      if (!std::filesystem::exists(journal))
+        throw IoError(journal,
+                      "there is no journal of starts; give result folders of `repose fit`");
+      merge_into(done, read_journal(journal, file_), journal.string());
+    }
+    if (options_.resume) {
+      const std::filesystem::path own = folder_.file(journal_name);
+      merge_into(done, read_journal(own, file_), own.string());
+    }
+    folder_.remove_old_outputs();
+    folder_.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n# "
+                                                 "From {}\n{}",
+                                                 version_string, arguments_.file, file_.resolved));
+    std::string journal = journal_head(file_);
+    for (const auto& s : done) journal += journal_line(s);
+    folder_.write_file(journal_name, journal);
+    for (const std::string& note : file_.notes)
+      if (!options_.quiet) fmt::print(stderr, "note: {}\n", note);
+
+    const Usage before = usage();
+    std::optional<tbb::global_control> threads;
+    if (options_.threads > 0)
+      threads.emplace(tbb::global_control::max_allowed_parallelism,
+                      static_cast<std::size_t>(options_.threads));
+    const InterruptGuard interrupt;
+    problem_.interrupt_by([&] { return interrupt.requested(); });
+    if (!file_.coarse.empty() && arguments_.merge.empty())
+      coarse_to_fine(done, interrupt);
+    else if (arguments_.merge.empty())
+      result_.starts =
+          calibration::run_starts(problem_, file_.options, done, [&](const auto& s) { after(s); });
+    else
+      result_.starts = std::move(done);
+    // an interrupted start with no point at all tells nothing
+    std::erase_if(result_.starts, [](const auto& s) { return s.optimum.z.size() == 0; });
+    const bool interrupted = interrupt.requested();
+    if (result_.starts.empty()) {
+      write_summary(interrupted ? "interrupted" : "failed", before, {});
+      fmt::print(stderr, "{}: no start came to an end\n", arguments_.file);
+      return interrupted ? ExitCode::interrupted : ExitCode::numerical_failure;
+    }
+    if (interrupted) problem_.interrupt_by({});
+    analyse(interrupted);
+    const std::string status = interrupted             ? "interrupted"
+                               : result_.best().failed ? "failed"
+                                                       : "done";
+    Json report = fit_report(file_, problem_, result_, status);
+    folder_.write_file("fit.json", report.dump(2) + "\n");
+    folder_.write_file("fitted.toml", fitted_toml(file_, result_));
+    draw();
+    write_summary(status, before, report);
+    tell(status, usage().wall_s - before.wall_s);
+    if (interrupted) return ExitCode::interrupted;
+    return result_.best().failed ? ExitCode::numerical_failure : ExitCode::done;
+  }
+
+ private:
+  /// Called under run_starts' lock: appends the start, whole, so that a kill loses none before it.
+  void after(const calibration::StartResult& s) {
+    std::filesystem::path path = folder_.file(journal_name);
+    FILE* out = std::fopen(path.c_str(), "ab");
+    const std::string line = journal_line(s);
+    const bool good =
+        out != nullptr && std::fwrite(line.data(), 1, line.size(), out) == line.size();
+    if (out != nullptr && (std::fclose(out) != 0 || !good)) out = nullptr;
+    if (out == nullptr) write_error_ = path.string();
+    if (options_.json)
+      fmt::print("{}\n", Json{{"event", "start"},
+                              {"start", s.index},
+                              {"objective", s.optimum.objective},
+                              {"why", s.optimum.why}}
+                             .dump());
+  }
+
+  /// All starts with the coarse scenes, then the best of them with the fine ones.
+  void coarse_to_fine(const std::vector<calibration::StartResult>& done,
+                      const InterruptGuard& interrupt) {
+    calibration::Problem coarse(problem_.space(), file_.coarse, file_.balance);
+    coarse.interrupt_by([&] { return interrupt.requested(); });
+    const auto starts =
+        calibration::run_starts(coarse, file_.options, done, [&](const auto& s) { after(s); });
+    if (starts.empty()) return;
+    calibration::StartResult fine;
+    fine.global = calibration::best_of(starts).optimum;
+    fine.from = fine.global.z;
+    calibration::OptimiseOptions options;
+    options.max_evaluations = file_.fine_evaluations;
+    options.x_tolerance = file_.options.x_tolerance;
+    options.seed = file_.options.seed;
+    fine.optimum = calibration::optimise(
+        problem_, file_.options.local == "none" ? "LN_BOBYQA" : file_.options.local, fine.from,
+        options);
+    result_.starts = {fine};
+    if (!options_.quiet && !options_.json)
+      fmt::print("coarse: objective {:.5g} from {} starts; fine: {:.5g} after {} evaluations\n",
+                 fine.global.objective, starts.size(), fine.optimum.objective,
+                 fine.optimum.evaluations + fine.optimum.gradients);
+  }
+
+  void analyse(bool interrupted) {
+    const auto& best = result_.best();
+    result_.uncertainty = calibration::uncertainty(problem_, best.z);
+    result_.clusters = calibration::clusters(problem_, result_.starts);
+    if (interrupted || best.failed) return;
+    if (file_.profiles)
+      for (std::size_t i = 0; i < file_.free.size(); ++i)
+        if (result_.uncertainty.at_bound[i] == 0)
+          result_.profiles.push_back(
+              calibration::profile(problem_, result_.uncertainty, best.z, static_cast<int>(i)));
+    if (file_.bootstrap > 0)
+      result_.bootstrap =
+          calibration::bootstrap(problem_, best.z, file_.bootstrap, file_.options.seed);
+  }
+
+  void write_summary(const std::string& status, const Usage& before, const Json& report) {
+    if (!write_error_.empty())
+      throw IoError(write_error_, "cannot append to the journal of starts");
+    const Usage after = usage();
+    Json s;
+    s["repose"] = version_string;
+    s["kind"] = "fit";
+    s["name"] = file_.name;
+    s["status"] = status;
+    s["seed"] = file_.options.seed;
+    s["wall_s"] = after.wall_s - before.wall_s;
+    s["cpu_s"] = after.cpu_s - before.cpu_s;
+    s["peak_memory_MB"] = after.peak_memory_MB;
+    for (const char* key : {"objective", "parameters", "counts", "discrepancy"})
+      if (report.contains(key)) s[key] = report[key];
+    s["input"] = file_.resolved;
+    folder_.write_file("summary.json", s.dump(2) + "\n");
+  }
+
+  /// A picture that cannot be drawn is a warning: the figures are in fit.json.
+  void draw() const {
+    const auto attempt = [&](const char* name, auto&& figure) {
+      try {
+        figure().render_svg(folder_.file(name));
+      } catch (const PlotError& error) {
+        fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+      } catch (const std::logic_error& error) {
+        fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+      }
+    };
+    attempt("fit.svg", [&] { return fit_picture(file_, problem_, result_); });
+    attempt("fit_diagnostics.svg", [&] { return fit_diagnostics(file_, result_); });
+  }
+
+  void tell(const std::string& status, double seconds) const {
+    const auto& u = result_.uncertainty;
+    if (options_.json) {
+      fmt::print("{}\n", Json{{"event", "done"},
+                              {"folder", folder_.path().string()},
+                              {"status", status},
+                              {"objective", result_.best().objective},
+                              {"wall_s", seconds}}
+                             .dump());
+      return;
+    }
+    if (options_.quiet) return;
+    fmt::print("{}: {}, objective {:.6g} from {} starts in {}\n", folder_.path().string(), status,
+               result_.best().objective, result_.starts.size(), duration_text(seconds));
+    for (std::size_t i = 0; i < file_.free.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const std::string unit = file_.free[i].unit == "-" ? "" : " " + file_.free[i].unit;
+      std::string words =
+          fmt::format("95 %: {:.5g} to {:.5g}{}", u.interval[i][0], u.interval[i][1], unit);
+      if (u.at_bound[i] != 0)
+        words = fmt::format("at its {} bound", u.at_bound[i] < 0 ? "lower" : "upper");
+      else if (!std::isfinite(u.standard_error[k]))
+        words = "the data do not determine it";
+      fmt::print("  {:<16} {:.6g}{}   {}\n", file_.free[i].name, u.values[k], unit, words);
+    }
+    if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
+      fmt::print("  worst determined: {}\n", u.combinations.front().words);
+    for (const std::string& text : discrepancies(file_, result_))
+      fmt::print("  does not follow: {}\n", text);
+    if (result_.clusters.size() > 1) {
+      const auto& c = result_.clusters;
+      fmt::print("  {} distinct optima; the best from {} of {} starts{}\n", c.size(),
+                 c.front().starts.size(), result_.starts.size(),
+                 c[1].same_prediction ? ", another fits as well" : "");
+    }
+  }
+
+  FitArguments arguments_;
+  CommonOptions options_;
+  std::filesystem::path output_;
+  FitFile file_;
+  calibration::Problem problem_;
+  ResultFolder folder_;
+  FitResult result_;
+  std::string write_error_;
+};
+
+}  // namespace
+
+Command add_fit(CLI::App& root) {
+  CLI::App* verb = root.add_subcommand("fit", "Fit a law's parameters to experiments");
+  verb->footer(
+      "Examples:\n"
+      "  repose fit data/experiments/fit_kaolin.toml\n"
+      "  repose fit FIT.toml --set solver.starts=64 -o results/wide --resume\n"
+      "  repose fit FIT.toml --starts-from 0 --starts-to 32 -o shard0     one share of a campaign\n"
+      "  repose fit FIT.toml --merge shard0 shard1 -o whole               all shares as one "
+      "result\n"
+      "Writes fit.json, fitted.toml (a [law] table), fit.svg, fit_diagnostics.svg, starts.jsonl,\n"
+      "summary.json and input.toml.");
+  const auto options = std::make_shared<CommonOptions>();
+  options->seed = 1;
+  const auto arguments = std::make_shared<FitArguments>();
+  verb->add_option("FIT.toml", arguments->file, "Fit file")->type_name("")->required();
+  add_run_options(*verb, *options);
+  verb->add_option("--starts-from", arguments->starts_from, "First start of this share")
+      ->type_name("I")
+      ->check(CLI::NonNegativeNumber.description(""));
+  verb->add_option("--starts-to", arguments->starts_to, "One past the last start of this share")
+      ->type_name("J")
+      ->check(CLI::PositiveNumber.description(""));
+  verb->add_option("--merge", arguments->merge, "Take the starts from these result folders")
+      ->type_name("DIR...");
+  return {verb, options, [options, arguments] { return FitRun(*arguments, *options).run(); }};
+}
+
+}  // namespace repose::app

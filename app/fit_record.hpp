@@ -1,0 +1,44 @@
+#pragma once
+/// \file
+/// What a fit leaves in words and figures: fit.json, fitted.toml, and the starts' journal that a
+/// resumed or merged fit takes up.
+
+#include <nlohmann/json.hpp>
+
+#include "app/read_fit.hpp"
+#include "calibration/uncertainty.hpp"
+
+namespace repose::app {
+
+/// Everything known at the end of a fit.
+struct FitResult {
+  std::vector<calibration::StartResult> starts;
+  calibration::Uncertainty uncertainty;
+  std::vector<calibration::Profile> profiles;
+  Eigen::MatrixXd bootstrap;  ///< repeats × parameters; empty if not asked for
+  std::vector<calibration::Cluster> clusters;
+  const calibration::Optimum& best() const { return calibration::best_of(starts).optimum; }
+};
+
+/// The text of fit.json. status: "done" or "interrupted". Values that are not finite become null.
+nlohmann::ordered_json fit_report(const FitFile& file, const calibration::Problem& problem,
+                                  const FitResult& result, const std::string& status);
+
+/// fitted.toml: a [law] table that `repose point` and `repose run` take, intervals in comments.
+std::string fitted_toml(const FitFile& file, const FitResult& result);
+
+/// Where the model does not follow the data, one sentence each; empty if nowhere.
+std::vector<std::string> discrepancies(const FitFile& file, const FitResult& result);
+
+/// One line per finished start, and back. A journal begins with the fit's fingerprint; a line that
+/// was cut short is ignored.
+std::string journal_head(const FitFile& file);
+std::string journal_line(const calibration::StartResult& start);
+/// Errors: BadInput if the journal belongs to another fit, or lists other numbers for the same
+/// start; IoError if it cannot be read. An absent file is an empty journal.
+std::vector<calibration::StartResult> read_journal(const std::filesystem::path& path,
+                                                   const FitFile& file);
+void merge_into(std::vector<calibration::StartResult>& all,
+                std::vector<calibration::StartResult> more, const std::string& from);
+
+}  // namespace repose::app

@@ -1,0 +1,172 @@
+#include "app/read_scene.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+
+#include "app/read_law.hpp"
+
+namespace repose::app {
+namespace {
+
+using mpm::Wall;
+
+bool fits_file_name(std::string_view name) {
+  return !name.empty() && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return std::isalnum(c) || c == '.' || c == '_' || c == '-';
+         });
+}
+
+/// flat_mu_i of data/scenes/flat_mu_i.toml, made fit for file names.
+std::string default_name(const InputFile& file) {
+  std::string name = std::filesystem::path(file.name()).stem().string();
+  for (char& c : name)
+    if (!fits_file_name(std::string_view(&c, 1)) && c != '.') c = '_';
+  return fits_file_name(name) ? name : "scene";
+}
+
+void read_general(TomlReader table, mpm::Scene& scene) {
+  scene.name = table.text("name", "the result folder's name", default_name(table.file()));
+  if (!fits_file_name(scene.name))
+    table.report("name", fmt::format("scene.name = \"{}\" becomes part of file names: letters, "
+                                     "digits, '.', '_' and '-' only, no '.' in front",
+                                     scene.name));
+  scene.end_time = table.number({"end_time", "s", "how long to simulate", not_negative, {}});
+  scene.gravity = table.number({"gravity", "m/s²", "gravity", not_negative, scene.gravity});
+  scene.tilt_deg = table.number(
+      {"tilt_deg", "°", "tilt of the box", Range{-90.0, 90.0, false, false}, scene.tilt_deg});
+}
+
+Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
+  if (const toml::node* node = table.get(key); node != nullptr && node->is_table()) {
+    Wall wall{Wall::Kind::friction};
+    wall.friction =
+        table.table(key).number({"friction", "-", "Coulomb coefficient", not_negative, {}});
+    return wall;
+  }
+  constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open};
+  table.expect(key);
+  if (!table.has(key)) return fallback;
+  const toml::node& node = *table.get(key);
+  if (const auto* word = node.as_string(); word != nullptr && word->get() == "friction") {
+    table.report(key,
+                 fmt::format("{} = \"friction\" needs a coefficient: {} = {{ friction = 0.4 }}",
+                             table.path_of(key), key));
+    return fallback;
+  }
+  if (!node.is_string()) {
+    table.report(key, fmt::format("{} must be one of \"no_slip\", \"slip\", \"open\", or a table "
+                                  "such as {{ friction = 0.4 }}; got {}",
+                                  table.path_of(key), describe(node)));
+    return fallback;
+  }
+  return {kinds[table.choice(key, {"no_slip", "slip", "open"}, 0)]};
+}
+
+void read_domain(TomlReader table, mpm::Scene& scene) {
+  scene.domain = table.pair({"size", "m", "width and height of the box", positive, {}});
+  scene.floor = read_wall(table, "floor", scene.floor);
+  const Wall walls = read_wall(table, "walls", scene.left);
+  scene.left = read_wall(table, "left", walls);
+  scene.right = read_wall(table, "right", walls);
+  scene.top = read_wall(table, "top", walls);
+}
+
+void read_initial(TomlReader table, mpm::Body& body) {
+  InitialConditions& initial = body.initial;
+  initial.p = table.optional_number({"p", "Pa", "mean pressure", {}, {}});
+  initial.ocr = table.optional_number(
+      {"ocr", "-", "overconsolidation ratio p_c/p", Range{1.0, positive.upper, false, true}, {}});
+  initial.v = table.optional_number({"v", "-", "specific volume", Range{1.0, positive.upper}, {}});
+  initial.density = table.optional_number({"density", "kg/m³", "density", positive, {}});
+  initial.K0 =
+      table.optional_number({"K0", "-", "ratio of horizontal to vertical stress", positive, {}});
+  if (const auto sigma = table.numbers(
+          {"sigma", "Pa", "xx, yy, zz, xy, yz, zx, compression positive", {}, {}}, 6)) {
+    initial.sigma.emplace();
+    std::copy(sigma->begin(), sigma->end(), initial.sigma->begin());
+  }
+  body.lithostatic = table.boolean("lithostatic", false);
+}
+
+mpm::Body read_body(TomlReader table, std::size_t position) {
+  mpm::Body body;
+  body.name = table.text("name", "a name for messages", fmt::format("body{}", position));
+  table.choice("shape", {"box"}, 0);
+  body.origin = table.pair({"origin", "m", "lower left corner", {}, {}}, std::array{0.0, 0.0});
+  body.size = table.pair({"size", "m", "width and height", positive, {}});
+  body.velocity = table.pair({"velocity", "m/s", "initial velocity", {}, {}}, std::array{0.0, 0.0});
+  body.spin = table.number({"spin", "rad/s", "initial angular velocity", {}, 0.0});
+  read_initial(table.table("initial"), body);
+  body.law = read_law(table.table("law"));
+  return body;
+}
+
+void read_grid(TomlReader table, mpm::Scene& scene) {
+  scene.h = table.number({"h", "m", "cell size", positive, {}});
+  scene.points_per_cell = static_cast<int>(table.integer(
+      "points_per_cell", "a square number: 1, 4, 9, 16", 1, 100, scene.points_per_cell));
+  scene.kernel = table.choice("kernel", {"quadratic", "cubic"}, 1) == 0 ? mpm::Kernel::quadratic
+                                                                        : mpm::Kernel::cubic;
+}
+
+void read_step(TomlReader table, mpm::Scene& scene) {
+  table.choice("transfer", {"apic"}, 0);
+  scene.courant = table.number(
+      {"courant", "-", "share of the stable step", Range{0.0, 1.0, true, false}, scene.courant});
+  scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});
+  if (!table.has("courant") || !table.has("dt")) return;
+  // An override replaces the file's choice; within one place the two contradict each other.
+  const bool courant_set = table.file().origin(table.path_of("courant")).is_override();
+  const bool dt_set = table.file().origin(table.path_of("dt")).is_override();
+  if (courant_set == dt_set)
+    table.report("dt", "give either step.courant or step.dt: a fixed step leaves no choice");
+  else if (courant_set)
+    scene.dt.reset();
+  else
+    scene.courant = mpm::Scene{}.courant;
+}
+
+PictureField read_output(TomlReader table, mpm::Scene& scene) {
+  scene.frame_interval = table.number({"frame_interval", "s", "time between frames, 0 for none",
+                                       not_negative, scene.frame_interval});
+  scene.series_interval =
+      table.number({"series_interval", "s", "time between rows of series.csv, 0 for two rows only",
+                    not_negative, scene.series_interval});
+  return table.choice("colour", {"mises", "density"}, 0) == 0 ? PictureField::mises
+                                                              : PictureField::density;
+}
+
+}  // namespace
+
+SceneFile read_scene(InputFile& file) {
+  SceneFile result;
+  mpm::Scene& scene = result.scene;
+  TomlReader root(file);
+  read_general(root.table("scene"), scene);
+  read_domain(root.table("domain"), scene);
+  for (const TomlReader& table : root.tables("body", "a block of material"))
+    scene.bodies.push_back(read_body(table, scene.bodies.size()));
+  read_grid(root.table("grid"), scene);
+  read_step(root.table("step"), scene);
+  result.colour = read_output(root.table("output"), scene);
+  if (file.ok()) {
+    const double height = scene.domain[1];
+    if (mpm::raise_top_to_cells(scene))
+      result.notes.push_back(fmt::format(
+          "domain.size: the box is {:.10g} m high instead of {:.10g} m, a whole number of "
+          "cells (h = {:.10g} m)",
+          scene.domain[1], height, scene.h));
+    try {
+      mpm::validate(scene);
+    } catch (const InputError& error) {
+      file.report(error);
+    }
+  }
+  file.throw_if_bad();
+  return result;
+}
+
+}  // namespace repose::app

@@ -1,0 +1,204 @@
+// `repose point` from input file to result folder: messages, exit codes, files; and every ready
+// test.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "app/command_line.hpp"
+#include "app/read_point_test.hpp"
+
+namespace repose::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string good = R"([law]
+name = "modified_cam_clay"
+compression = "v-ln_p"
+M = 0.888
+lambda = 0.161
+kappa = 0.062
+nu = 0.3
+Gamma = 2.759
+[initial]
+p = 100e3
+ocr = 1.0
+[test]
+kind = "triaxial"
+drainage = "undrained"
+axial_strain = 0.1
+points = 20
+)";
+
+/// Everything that is wrong with a text, one line each.
+std::string problems(const std::string& text, std::vector<std::string> sets = {}) {
+  try {
+    InputFile file = InputFile::parse(text, "t.toml", sets);
+    read_point_test(file);
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(ReadPointTest, reads_a_test) {
+  InputFile file = InputFile::parse(good, "t.toml");
+  const PointTestFile test = read_point_test(file);
+  ASSERT_EQ(test.test.path.legs.size(), 1u);
+  EXPECT_TRUE(test.test.path.undrained);
+  EXPECT_EQ(test.test.path.legs[0].spec().points, 20);
+  EXPECT_EQ(test.name, "t");
+}
+
+TEST(ReadPointTest, says_what_is_wrong_and_where) {
+  EXPECT_EQ(problems(good), "");
+  EXPECT_TRUE(contains(problems(good, {"test.rate=0"}), "test.rate"))
+      << problems(good, {"test.rate=0"});
+  EXPECT_TRUE(contains(problems(good, {"test.rate=nan"}), "test.rate"));
+  EXPECT_TRUE(contains(problems(good, {"test.rates.from=1"}), "simple_shear"));
+  EXPECT_TRUE(contains(problems(good, {"test.drainage=undraind"}), "undrained"));
+  EXPECT_TRUE(contains(problems(good, {"test.axial_strian=0.1"}), "axial_strain"));
+  EXPECT_TRUE(contains(problems(good, {"test.q_end=1e4"}), "a stage ends at one value"));
+  EXPECT_TRUE(contains(problems(good, {"initial.p=-1"}), "initial p must be > p_sep"));
+  EXPECT_TRUE(contains(problems(good, {"initial.ocr=0.5"}), "initial.ocr"));
+  EXPECT_TRUE(contains(problems(good, {"law.kappa=0.2"}), "kappa must be < lambda"));
+  EXPECT_TRUE(contains(problems(good, {"integration.method=rk4"}), "adaptive"));
+  EXPECT_TRUE(contains(problems(good, {"integration.tolerance=0"}), "tolerance"));
+  EXPECT_TRUE(contains(problems(good, {"test.cycles=3"}), "q_min and q_max"));
+  const std::string custom = problems(good, {"test.kind=custom", "test.duration=10"});
+  EXPECT_TRUE(contains(custom, "six are needed")) << custom;
+  const std::string open_end = problems(good + "[test.stop]\nq_over_p = 1.0\n");
+  EXPECT_EQ(open_end, "");
+}
+
+class PointCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) /
+              ("repose_point_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  std::string read(const std::string& name) const {
+    std::ifstream in(folder_ / name);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  int run(const std::string& file, const std::string& out,
+          std::vector<std::string> sets = {}) const {
+    std::vector<std::string> words{"repose", "point", file, "-o", (folder_ / out).string(),
+                                   "--quiet"};
+    for (const std::string& set : sets) {
+      words.push_back("--set");
+      words.push_back(set);
+    }
+    std::vector<const char*> argv;
+    for (const std::string& word : words) argv.push_back(word.c_str());
+    return run_command_line(static_cast<int>(argv.size()), argv.data());
+  }
+  fs::path folder_;
+};
+
+TEST_F(PointCommand, writes_its_files_and_the_resolved_input_gives_the_same_bits) {
+  ASSERT_EQ(run(write("t.toml", good), "a"), 0);
+  const std::string curve = read("a/curve.csv");
+  EXPECT_EQ(curve.substr(0, curve.find('\n')),
+            "time_s,eps_a,eps_r,eps_v,eps_q,p_Pa,q_Pa,sigma_a_Pa,sigma_r_Pa,u_Pa,v,p_c_Pa");
+  EXPECT_EQ(std::count(curve.begin(), curve.end(), '\n'), 22);
+  const auto summary = nlohmann::json::parse(read("a/summary.json"));
+  EXPECT_EQ(summary["status"], "done");
+  EXPECT_EQ(summary["method"], "adaptive");
+  EXPECT_LE(summary["control_residual"].get<double>(), 1e-10);
+  EXPECT_EQ(summary["input"]["test"]["axial_strain"], 0.1);
+  EXPECT_TRUE(summary.contains("seed"));
+  ASSERT_EQ(run((folder_ / "a/input.toml").string(), "b"), 0);
+  EXPECT_EQ(read("b/curve.csv"), curve);
+}
+
+TEST_F(PointCommand, a_path_that_cannot_be_finished_leaves_the_part_done) {
+  const std::string file = write("t.toml", good);
+  EXPECT_EQ(run(file, "a",
+                {"test.axial_strain=-0.5", "test.drainage=drained", "test.kind=isotropic",
+                 "test.volumetric_strain=-3"}),
+            2);  // two ends
+  std::string text = good;
+  text.replace(text.find("axial_strain = 0.1"), 18, "volumetric_strain = -3.0");
+  EXPECT_EQ(run(write("u.toml", text), "b", {"test.kind=isotropic"}), 2);  // drainage has no place
+  text.replace(text.find("drainage = \"undrained\"\n"), 23, "");
+  EXPECT_EQ(run(write("v.toml", text), "c", {"test.kind=isotropic"}), 3);
+  const auto summary = nlohmann::json::parse(read("c/summary.json"));
+  EXPECT_EQ(summary["status"], "failed");
+  EXPECT_TRUE(contains(summary["reason"], "p = p_sep")) << summary["reason"];
+  EXPECT_GT(summary["rows"].get<int>(), 3);
+  EXPECT_FALSE(contains(read("c/curve.csv"), "nan"));
+}
+
+TEST_F(PointCommand, a_history_and_its_mistakes) {
+  std::string text = good.substr(0, good.find("[test]"));
+  text += "[test]\nkind = \"custom\"\nhistory = \"h.csv\"\n";
+  const std::string file = write("t.toml", text);
+  EXPECT_EQ(run(file, "a"), 4);  // no such file
+  write("h.csv", "time_s,eps_a,sigma_r_Pa\n0,0,1e5\n10,nan,1e5\n");
+  EXPECT_EQ(run(file, "a"), 2);
+  write("h.csv", "time_s,eps_a\n0,0\n10,0.1\n");
+  EXPECT_EQ(run(file, "a"), 2);
+  write("h.csv", "time_s,eps_a,sigma_r\n0,0,1e5\n10,0.1,1e5\n");
+  EXPECT_EQ(run(file, "a"), 2);
+  write("h.csv", "time_s,eps_a,sigma_r_Pa\n0,0,1e5\n10,0.1,1e5\n");
+  EXPECT_EQ(run(file, "a"), 0);
+  ASSERT_EQ(run((folder_ / "a/input.toml").string(), "b"), 0);
+  EXPECT_EQ(read("a/curve.csv"), read("b/curve.csv"));
+}
+
+TEST_F(PointCommand, every_ready_test_runs) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(REPOSE_SOURCE_DIR) / "data/experiments"))
+    if (entry.path().extension() == ".toml" &&
+        !entry.path().filename().string().starts_with("fit_")) {
+      EXPECT_EQ(run(entry.path().string(), "out"), 0) << entry.path();
+      ++count;
+    }
+  EXPECT_GE(count, 15);
+}
+
+TEST(CheckCommand, takes_point_tests_and_fits) {
+  const std::string folder = REPOSE_SOURCE_DIR "/data/experiments/";
+  const auto check = [](const std::string& path, const char* set) {
+    const char* const plain[] = {"repose", "check", path.c_str(), "--quiet"};
+    const char* const changed[] = {"repose", "check", path.c_str(), "--quiet", "--set", set};
+    return set == nullptr ? run_command_line(4, plain) : run_command_line(6, changed);
+  };
+  EXPECT_EQ(check(folder + "weald_clay_undrained.toml", nullptr), 0);
+  EXPECT_EQ(check(folder + "weald_clay_undrained.toml", "law.M=-1"), 2);
+  EXPECT_EQ(check(folder + "fit_kaolin.toml", nullptr), 0);
+  EXPECT_EQ(check(folder + "fit_kaolin.toml", "solver.local=LD_SLSPQ"), 2);
+}
+
+TEST(ChartCommand, draws_the_point_driver) {
+  const fs::path folder = fs::path(testing::TempDir()) / "repose_chart_point";
+  fs::remove_all(folder);
+  const std::string out = folder.string();
+  const char* const argv[] = {"repose", "chart", "point", "--quiet", "-o", out.c_str()};
+  ASSERT_EQ(run_command_line(6, argv), 0);
+  for (const char* const name : {"chart.csv", "error_map.csv"})
+    EXPECT_GT(fs::file_size(folder / name), 1000u) << name;
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace repose::app
