@@ -140,9 +140,15 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
   out += "\n[grid]\n" + line("h", number(scene.h), "m") +
          line("points_per_cell", std::to_string(scene.points_per_cell)) +
          line("kernel", toml_string(scene.kernel == mpm::Kernel::cubic ? "cubic" : "quadratic"));
-  out += "\n[step]\n" + line("transfer", toml_string("apic")) +
-         (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
-                   : line("courant", number(scene.courant), "of the largest stable step"));
+  out +=
+      "\n[step]\n" +
+      line("transfer", toml_string(mpm::transfer_names[static_cast<std::size_t>(scene.transfer)])) +
+      (scene.transfer == mpm::Transfer::relaxed
+           ? line("relaxation_time",
+                  number(scene.relaxation_time.value_or(mpm::default_relaxation_time(scene))), "s")
+           : "") +
+      (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
+                : line("courant", number(scene.courant), "of the largest stable step"));
   out += "\n[output]\n" + line("frame_interval", number(scene.frame_interval), "s, 0 for none") +
          line("series_interval", number(scene.series_interval), "s") +
          line("colour", toml_string(file.colour == PictureField::mises ? "mises" : "density"),

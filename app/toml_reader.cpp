@@ -131,7 +131,7 @@ std::string TomlReader::text(std::string_view key, std::string_view doc,
   return fallback.value_or("");
 }
 
-std::size_t TomlReader::choice(std::string_view key, std::initializer_list<std::string_view> words,
+std::size_t TomlReader::choice(std::string_view key, const std::vector<std::string_view>& words,
                                std::size_t fallback) {
   expect(key);
   const toml::node* node = get(key);

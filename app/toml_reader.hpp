@@ -44,7 +44,7 @@ class TomlReader {
   std::string text(std::string_view key, std::string_view doc,
                    std::optional<std::string> fallback = {});
   /// One of several words; returns its position.
-  std::size_t choice(std::string_view key, std::initializer_list<std::string_view> words,
+  std::size_t choice(std::string_view key, const std::vector<std::string_view>& words,
                      std::size_t fallback);
   /// [x, y], each in the key's range.
   std::array<double, 2> pair(const NumberKey& key,

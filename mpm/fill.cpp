@@ -33,6 +33,9 @@ void append(PointSet& points, double x, double y, const Body& body, const Initia
   points.field[RHO].push_back(at.density);
   points.field[MASS].push_back(at.density * area);
   for (std::size_t k = 0; k < at.state.size(); ++k) points.field[STATE + k].push_back(at.state[k]);
+  if (points.affine != LXX)
+    for (std::size_t k = 0; k < affine_fields; ++k)
+      points.field[points.affine + k].push_back(points.field[LXX + k].back());
   points.id.push_back(id);
   ++points.count;
 }
@@ -60,6 +63,10 @@ PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
   points.material =
       within("law", [&] { return std::shared_ptr<const Material>(make_material(body.law)); });
   points.fields = STATE + points.material->law().state.size();
+  if (scene.transfer == Transfer::relaxed) {
+    points.affine = points.fields;
+    points.fields += affine_fields;
+  }
 
   const double spacing = scene.h / std::sqrt(static_cast<double>(scene.points_per_cell));
   const auto nx = static_cast<std::int64_t>(std::llround(body.size[0] / spacing));

@@ -7,7 +7,7 @@ Batch PointSet::batch(const Range& range) {
   b.count = range.count;
   b.density = field[RHO].data() + range.begin;
   for (std::size_t k = 0; k < 4; ++k) b.stress[k] = field[SXX + k].data() + range.begin;
-  for (std::size_t k = 0; STATE + k < fields; ++k)
+  for (std::size_t k = 0; k < state_fields(); ++k)
     b.state[k] = field[STATE + k].data() + range.begin;
   return b;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "models/registry.hpp"
@@ -38,7 +39,18 @@ struct Body {
 };
 
 enum class Kernel { quadratic, cubic };
-enum class Transfer { apic };
+
+/// How velocities travel between points and grid; transfer.hpp has the formulas.
+enum class Transfer {
+  pic,      ///< points take the grid's velocity
+  flip,     ///< points add its increment
+  apic,     ///< as pic, with an affine velocity field around each point
+  aflip,    ///< as flip, with the affine field of apic
+  relaxed,  ///< points keep their own velocity and affine field, which relax towards the grid's at
+            ///< a rate: the damping of apic per unit of time instead of per step
+};
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 5> transfer_names{"pic", "flip", "apic", "aflip", "relaxed"};
 
 struct Scene {
   std::string name;
@@ -58,6 +70,8 @@ struct Scene {
   int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16
   Kernel kernel = Kernel::cubic;
   Transfer transfer = Transfer::apic;
+  /// [s], for Transfer::relaxed; absent: default_relaxation_time()
+  std::optional<double> relaxation_time;
 
   double courant = 0.4;      ///< Δt = courant · h/(c + |v|), if dt is absent
   std::optional<double> dt;  ///< fixed step [s]
@@ -68,6 +82,11 @@ struct Scene {
 
 /// Distance between neighbouring points of a body at the start [m]: h/√points_per_cell.
 double point_spacing(const Scene& scene);
+
+/// 0.01 √(h/g): a hundredth of the time in which a grid cell falls through its own size [s]. Short
+/// enough to quieten what the grid cannot carry, long enough that what it carries loses less than
+/// in APIC at any stable step; docs/transfers.md has the measurements. HUGE_VAL without gravity.
+double default_relaxation_time(const Scene& scene);
 
 /// Points of a body along x and y: its size over point_spacing(), which validate() has found whole.
 std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body);

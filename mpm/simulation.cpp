@@ -335,7 +335,7 @@ std::string Simulation::Impl::describe(const PointSet& points, std::size_t body,
       points.id[slot], body_names[body], points.material->law().name, points[X][slot],
       points[Y][slot], points[VX][slot], points[VY][slot], points[RHO][slot], points[SXX][slot],
       points[SYY][slot], points[SZZ][slot], points[SXY][slot]);
-  for (std::size_t k = 0; STATE + k < points.fields; ++k)
+  for (std::size_t k = 0; k < points.state_fields(); ++k)
     text += fmt::format(", {} {:.6g} {}", points.material->law().state[k].name,
                         points[STATE + k][slot], points.material->law().state[k].unit);
   return text;

@@ -8,6 +8,7 @@
 #include "mpm/ledger.hpp"
 #include "mpm/simulation.hpp"
 #include "mpm/step_size.hpp"
+#include "mpm/transfer.hpp"
 #include "mpm/walls.hpp"
 
 namespace repose::mpm {
@@ -70,14 +71,17 @@ class Simulation::Impl {
     bool outflow = false;
     std::string failure;
   };
-  template <class Kernel>
+  template <class Kernel, bool affine>
   void transfer_to_tile(std::size_t block);
-  template <class Kernel>
+  template <class Kernel, bool keeps>
   void advance_block(std::size_t block, double dt, BlockSums& sums);
   /// Adds a range's energies, work, power and signals after its update.
-  void sum_up(const PointSet& points, const Range& range, const Batch& batch, bool viscous,
-              BlockSums& sums) const;
-  void move(PointSet& points, const Range& range, double dt, BlockSums& sums) const;
+  void sum_up(const PointSet& points, const Range& range, const Batch& batch, const Motion& motion,
+              bool viscous, BlockSums& sums) const;
+  void move(PointSet& points, const Range& range, const Motion& motion, double dt,
+            BlockSums& sums) const;
+  /// What the scene's transfer keeps over a step.
+  Retention retention(double dt) const;
   void remove_outflow();
   double initial_power() const;
   /// −Vσ:L + mg·v of one point [W/m].

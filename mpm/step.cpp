@@ -101,21 +101,41 @@ double Simulation::Impl::choose_step(double stop_at) const {
   return remaining / std::max(1.0, std::ceil(remaining / dt - 1e-9));
 }
 
-template <class Kernel>
+Retention Simulation::Impl::retention(double dt) const {
+  switch (scene.transfer) {
+    case Transfer::pic:
+      return {false, 0.0, 0.0};
+    case Transfer::flip:
+      return {false, 1.0, 0.0};
+    case Transfer::apic:
+      return {true, 0.0, 0.0};
+    case Transfer::aflip:
+      return {true, 1.0, 0.0};
+    case Transfer::relaxed:
+      break;
+  }
+  const double tau = scene.relaxation_time.value_or(default_relaxation_time(scene));
+  const double keep = std::exp(-dt / tau);
+  return {true, keep, keep};
+}
+
+template <class Kernel, bool affine>
 void Simulation::Impl::transfer_to_tile(std::size_t block) {
   const PointBlock& pb = grid.point_blocks[block];
   Tile& tile = grid.tiles[block];
   for (auto& channel : tile) channel.fill(0.0);
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    points_to_tile<Kernel>(bodies[b], pb.range[b], grid.h(), tile_origin(pb), tile);
+    points_to_tile<Kernel, affine>(bodies[b], pb.range[b], grid.h(), tile_origin(pb), tile);
 }
 
 void Simulation::Impl::points_to_grid() {
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
+    const bool affine = retention(0.0).affine;
     if (scene.kernel == Kernel::cubic)
-      transfer_to_tile<CubicKernel>(k);
+      affine ? transfer_to_tile<CubicKernel, true>(k) : transfer_to_tile<CubicKernel, false>(k);
     else
-      transfer_to_tile<QuadraticKernel>(k);
+      affine ? transfer_to_tile<QuadraticKernel, true>(k)
+             : transfer_to_tile<QuadraticKernel, false>(k);
   });
 }
 
@@ -165,19 +185,26 @@ void Simulation::Impl::update_grid(double dt) {
 void Simulation::Impl::grid_to_points(double dt) {
   block_sums_.assign(grid.point_blocks.size(), BlockSums{});
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
+    const bool keeps = retention(dt).velocity > 0.0;
     if (scene.kernel == Kernel::cubic)
-      advance_block<CubicKernel>(k, dt, block_sums_[k]);
+      keeps ? advance_block<CubicKernel, true>(k, dt, block_sums_[k])
+            : advance_block<CubicKernel, false>(k, dt, block_sums_[k]);
     else
-      advance_block<QuadraticKernel>(k, dt, block_sums_[k]);
+      keeps ? advance_block<QuadraticKernel, true>(k, dt, block_sums_[k])
+            : advance_block<QuadraticKernel, false>(k, dt, block_sums_[k]);
   });
 }
 
-template <class Kernel>
+template <class Kernel, bool keeps>
 void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& sums) {
   const PointBlock& pb = grid.point_blocks[block];
   VelocityTile tile;
   tile.vx.fill(0.0);
   tile.vy.fill(0.0);
+  if (keeps) {
+    tile.ux.fill(0.0);
+    tile.uy.fill(0.0);
+  }
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       const std::int32_t source = pb.node_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
@@ -192,6 +219,10 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
           const auto from = static_cast<std::size_t>(j * block_nx + i);
           tile.vx[to] = nb.vx[from];
           tile.vy[to] = nb.vy[from];
+          if (keeps) {
+            tile.ux[to] = nb.ux[from];
+            tile.uy[to] = nb.uy[from];
+          }
         }
     }
 
@@ -200,12 +231,14 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
     PointSet& points = bodies[b];
     const Range& range = pb.range[b];
     if (range.count == 0) continue;
-    tile_to_points<Kernel>(tile, tile_origin(pb), grid.h(), range, points);
-    move(points, range, dt, sums);
+    const std::size_t n = padded(range.count);
+    scratch.assign(10 * n, 0.0);
+    const Motion motion{scratch.data() + 8 * n, scratch.data() + 9 * n};
+    tile_to_points<Kernel, keeps>(tile, tile_origin(pb), grid.h(), range, retention(dt), points,
+                                  motion);
+    move(points, range, motion, dt, sums);
 
     // strain and spin of the step, then the law
-    const std::size_t n = padded(range.count);
-    scratch.assign(8 * n, 0.0);
     double* const e_xx = scratch.data();
     double* const e_yy = e_xx + n;
     double* const e_zz = e_yy + n;  // plane strain: stays 0
@@ -245,12 +278,12 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
       const double loosest = 0.2 * points[MASS][s] * inv_h2;
       if (points[RHO][s] < loosest) points[RHO][s] = loosest;
     }
-    sum_up(points, range, batch, viscous, sums);
+    sum_up(points, range, batch, motion, viscous, sums);
   }
 }
 
 void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const Batch& batch,
-                              bool viscous, BlockSums& sums) const {
+                              const Motion& motion, bool viscous, BlockSums& sums) const {
   const double viscous_factor = 4.0 / (grid.h() * grid.h());
   // whole packs first, the rest one by one; the order is fixed, so the sums are too
   const auto add = [&]<class T>(PointSums<T>& total, std::size_t k) {
@@ -261,15 +294,17 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
     const T vx = at(VX);
     const T vy = at(VY);
     const T v2 = vx * vx + vy * vy;
+    const T moving_x = lanes_at<T>(motion.vx + k);
+    const T moving_y = lanes_at<T>(motion.vy + k);
     const T strain_v = lanes_at<T>(batch.strain[0] + k) + lanes_at<T>(batch.strain[1] + k);
     total.kinetic = total.kinetic + T(0.5) * m * v2;
     // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
     total.work =
         total.work + m * inv_rho * (T(1.0) - T(0.5) * strain_v) * lanes_at<T>(batch.work + k);
     const T stress_power = at(SXX) * at(LXX) + at(SYY) * at(LYY) + at(SXY) * (at(LXY) + at(LYX));
-    total.power =
-        total.power + m * (T(gravity[0]) * vx + T(gravity[1]) * vy - stress_power * inv_rho);
-    const T speed = sqrt(v2);
+    total.power = total.power + m * (T(gravity[0]) * moving_x + T(gravity[1]) * moving_y -
+                                     stress_power * inv_rho);
+    const T speed = sqrt(moving_x * moving_x + moving_y * moving_y);
     total.speed = max_of(total.speed, speed);
     total.signal = max_of(total.signal, T(speed + sqrt(lanes_at<T>(batch.modulus + k) * inv_rho)));
     if (viscous)
@@ -288,7 +323,7 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
   sums.signals.include({rest.speed, rest.signal, rest.viscous_rate});
 }
 
-void Simulation::Impl::move(PointSet& points, const Range& range, double dt,
+void Simulation::Impl::move(PointSet& points, const Range& range, const Motion& motion, double dt,
                             BlockSums& sums) const {
   // a closed wall is never crossed: the interpolated velocity vanishes on it, and what round-off or
   // an impact faster than one cell per step does is undone here and counted
@@ -313,8 +348,8 @@ void Simulation::Impl::move(PointSet& points, const Range& range, double dt,
     }
   };
   for (std::size_t s = range.begin; s < range.begin + range.count; ++s) {
-    double x = points[X][s] + dt * points[VX][s];
-    double y = points[Y][s] + dt * points[VY][s];
+    double x = points[X][s] + dt * motion.vx[s - range.begin];
+    double y = points[Y][s] + dt * motion.vy[s - range.begin];
     keep(x, 0.0, width, walls.left, walls.right);
     keep(y, 0.0, height, walls.floor, walls.top);
     points[X][s] = x;
@@ -347,8 +382,10 @@ void Simulation::Impl::close_ledger() {
   const double points_to_nodes =
       (ledger.kinetic + 0.5 * last_dt * ledger.power) - (nodes.before + 0.5 * nodes.impulse_work);
   const double nodes_to_points = nodes.after + wall_effect_.kinetic_after - kinetic;
-  ledger.transfer_loss += points_to_nodes + nodes_to_points;
-  ledger.wall_loss -= wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
+  const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
+  const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
+  ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
+  ledger.wall_loss -= (1.0 - kept) * mirrored;
   ledger.kinetic = kinetic;
   ledger.power = power;
   ledger.stress_work += work;

@@ -12,20 +12,36 @@
 
 namespace repose::mpm {
 
+/// What a point keeps of its own when it comes back from the grid,
+///   v_p ← Σ w v_i + keep (v_p − Σ w u_i),   u, v: grid velocity before and after forces,
+/// and likewise its affine velocity A_p.
+struct Retention {
+  bool affine = true;     ///< the affine velocity goes to the grid
+  double velocity = 0.0;  ///< keep, of the velocity
+  double gradient = 0.0;  ///< keep, of the affine velocity
+};
+
 /// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.
-template <class Kernel>
+template <class Kernel, bool affine>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
                     Tile& tile);
 
-/// Velocity at the nodes of a tile.
+/// Velocity at the nodes of a tile, before (u) and after (v) forces.
 struct VelocityTile {
-  std::array<double, tile_nodes> vx, vy;
+  std::array<double, tile_nodes> vx, vy, ux, uy;
 };
 
-/// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY).
-template <class Kernel>
+/// The velocity Σ w v_i that moves a range's points, from its first one on.
+struct Motion {
+  double *vx, *vy;
+};
+
+/// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY, the
+/// affine velocity) and gives the velocity that moves them. Without `keeps`, both retentions are 0
+/// and ux, uy are not read.
+template <class Kernel, bool keeps>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
-                    const Range& range, PointSet& points);
+                    const Range& range, const Retention& keep, PointSet& points, Motion motion);
 
 }  // namespace repose::mpm

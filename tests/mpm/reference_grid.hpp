@@ -41,7 +41,7 @@ inline Particle image(const Particle& p, const Vector& R, const Vector& S, const
 struct Node {
   double m = 0.0;
   Vector momentum{}, force{};
-  Vector velocity{};  ///< for gather()
+  Vector before{}, velocity{};  ///< before and after forces; for gather()
 };
 
 class Grid {
@@ -64,18 +64,20 @@ class Grid {
   /// v_i = (p_i + Δt f_i)/m_i
   void advance(double dt) {
     for (auto& [place, node] : nodes)
-      for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t i = 0; i < 2; ++i) {
+        node.before[i] = node.m > 0.0 ? node.momentum[i] / node.m : 0.0;
         node.velocity[i] = node.m > 0.0 ? (node.momentum[i] + dt * node.force[i]) / node.m : 0.0;
+      }
   }
 
   /// v = Σ w v_i, L = D⁻¹ Σ w v_i dᵀ
-  void gather(const Vector& x, Vector& v, Matrix& L) {
+  void gather(const Vector& x, Vector& v, Matrix& L, Vector Node::*field = &Node::velocity) {
     v = {};
     L = {};
     for_each_weight(x, [&](const Node& node, double w, const Vector& d) {
       for (std::size_t i = 0; i < 2; ++i) {
-        v[i] += w * node.velocity[i];
-        for (std::size_t j = 0; j < 2; ++j) L[i][j] += w * node.velocity[i] * d[j] / moment();
+        v[i] += w * (node.*field)[i];
+        for (std::size_t j = 0; j < 2; ++j) L[i][j] += w * (node.*field)[i] * d[j] / moment();
       }
     });
   }

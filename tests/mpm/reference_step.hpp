@@ -31,24 +31,47 @@ class Model {
     for (const PointState& point : points_) scatter_with_images(grid, point);
     grid.advance(dt);
     for (PointState& point : points_) {
-      Vector v;
-      Matrix L;
+      Vector u, v;
+      Matrix G, L;
+      grid.gather({point[X], point[Y]}, u, G, &Node::before);
       grid.gather({point[X], point[Y]}, v, L);
+      const auto [keep_v, keep_A] = kept(dt);
       for (std::size_t i = 0; i < 2; ++i) {
-        point.field[VX + i] = v[i];
+        point.field[VX + i] = v[i] + keep_v * (point[VX + i] - u[i]);
         point.field[X + i] += dt * v[i];
-        for (std::size_t j = 0; j < 2; ++j) point.field[LXX + 2 * i + j] = L[i][j];
+        for (std::size_t j = 0; j < 2; ++j) {
+          point.field[LXX + 2 * i + j] = L[i][j];
+          double& A = point.affine[2 * i + j];
+          A = L[i][j] + keep_A * (A - G[i][j]);
+        }
       }
       update_stress(point, dt);
     }
   }
 
  private:
+  /// Shares of its own velocity and affine velocity that a point keeps over a step.
+  std::array<double, 2> kept(double dt) const {
+    const double rate = scene_.relaxation_time ? 1.0 / *scene_.relaxation_time : 0.0;
+    switch (scene_.transfer) {
+      case Transfer::pic:
+      case Transfer::apic:
+        return {0.0, 0.0};
+      case Transfer::flip:
+      case Transfer::aflip:
+        return {1.0, 0.0};
+      case Transfer::relaxed:
+        return {std::exp(-dt * rate), std::exp(-dt * rate)};
+    }
+    return {};
+  }
+
   void scatter_with_images(Grid& grid, const PointState& point) const {
     Particle p;
     p.x = {point[X], point[Y]};
     p.v = {point[VX], point[VY]};
-    p.L = {{{point[LXX], point[LXY]}, {point[LYX], point[LYY]}}};
+    if (scene_.transfer != Transfer::pic && scene_.transfer != Transfer::flip)
+      p.L = {{{point.affine[0], point.affine[1]}, {point.affine[2], point.affine[3]}}};
     p.stress = {{{point[SXX], point[SXY]}, {point[SXY], point[SYY]}}};
     p.mass = point[MASS];
     p.volume = point[MASS] / point[RHO];

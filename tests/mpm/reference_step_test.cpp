@@ -33,6 +33,17 @@ Scene melee(Kernel kernel, const Wall& sides, const Wall& base, const LawSpec& l
   return scene;
 }
 
+/// The affine velocities of all points, which the comparison of fields does not see.
+double affine_difference(const std::vector<PointState>& a, const std::vector<PointState>& b) {
+  double largest = 0.0, scale = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k)
+    for (std::size_t j = 0; j < affine_fields; ++j) {
+      largest = std::max(largest, std::abs(a[k].affine[j] - b[k].affine[j]));
+      scale = std::max(scale, std::abs(b[k].affine[j]));
+    }
+  return largest / scale;
+}
+
 /// Runs both and compares all they have.
 void expect_same(const Scene& scene, int steps) {
   Simulation simulation(scene, 2);
@@ -49,6 +60,7 @@ void expect_same(const Scene& scene, int steps) {
   EXPECT_LT(reference::difference(found, model.points(), {X, Y}), tolerance);
   EXPECT_LT(reference::difference(found, model.points(), {VX, VY}), tolerance);
   EXPECT_LT(reference::difference(found, model.points(), {LXX, LXY, LYX, LYY}), tolerance);
+  EXPECT_LT(affine_difference(found, model.points()), tolerance);
   EXPECT_LT(reference::difference(found, model.points(), {RHO}), tolerance);
   EXPECT_LT(reference::difference(found, model.points(), {SXX, SYY, SZZ, SXY}), tolerance);
 }
@@ -70,6 +82,17 @@ TEST_P(ReferenceStepTest, ClayOnNoSlipBetweenSlip) {
   clay.values["kappa"] = 0.05;
   clay.values["Gamma"] = 2.5;
   expect_same(melee(GetParam(), {Wall::Kind::slip}, {Wall::Kind::no_slip}, clay), 200);
+}
+
+TEST_P(ReferenceStepTest, EveryTransfer) {
+  for (const Transfer transfer :
+       {Transfer::pic, Transfer::flip, Transfer::aflip, Transfer::relaxed}) {
+    SCOPED_TRACE(transfer_names[static_cast<std::size_t>(transfer)]);
+    Scene scene = melee(GetParam(), {Wall::Kind::slip}, {Wall::Kind::no_slip}, mu_i(2e4));
+    scene.transfer = transfer;
+    if (transfer == Transfer::relaxed) scene.relaxation_time = 2e-3;  // about two steps
+    expect_same(scene, 100);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, ReferenceStepTest,

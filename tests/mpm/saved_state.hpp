@@ -87,6 +87,7 @@ struct PointState {
   std::int64_t id;
   std::size_t body;
   std::array<double, STATE + max_state> field{};
+  std::array<double, affine_fields> affine{};  ///< xx, xy, yx, yy of the field given to the grid
   double operator[](std::size_t f) const { return field[f]; }
 };
 
@@ -97,13 +98,20 @@ inline std::vector<PointState> points_of(const Simulation& simulation) {
   for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
     const std::string body = "body" + std::to_string(b);
     const std::vector<std::int64_t>& id = state.wholes.at(body + "_id");
+    // the last four fields where the transfer keeps an affine velocity of its own
+    std::size_t fields = 0;
+    while (state.reals.count(body + "_field" + std::to_string(fields)) > 0) ++fields;
+    const bool apart = simulation.scene().transfer == Transfer::relaxed;
+    const std::size_t affine = apart ? fields - affine_fields : LXX;
     for (std::size_t s = 0; s < id.size(); ++s) {
       if (id[s] < 0) continue;
-      PointState& point = points.emplace_back(PointState{id[s], b, {}});
-      for (std::size_t f = 0; f < point.field.size(); ++f) {
+      PointState& point = points.emplace_back(PointState{id[s], b, {}, {}});
+      for (std::size_t f = 0; f < std::min(apart ? affine : fields, point.field.size()); ++f) {
         const auto values = state.reals.find(body + "_field" + std::to_string(f));
         if (values != state.reals.end()) point.field[f] = values->second[s];
       }
+      for (std::size_t k = 0; k < affine_fields; ++k)
+        point.affine[k] = state.reals.at(body + "_field" + std::to_string(affine + k))[s];
     }
   }
   std::sort(points.begin(), points.end(),

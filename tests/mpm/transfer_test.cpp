@@ -41,12 +41,24 @@ class TransferTest : public ::testing::Test {
   static Tile scattered(const PointSet& points) {
     Tile tile;
     for (auto& channel : tile) channel.fill(0.0);
-    points_to_tile<K>(points, {0, points.count}, h, origin, tile);
+    points_to_tile<K, true>(points, {0, points.count}, h, origin, tile);
     return tile;
   }
   static double x_of(std::size_t n) { return (origin[0] + static_cast<int>(n) % tile_stride) * h; }
   static double y_of(std::size_t n) { return (origin[1] + static_cast<int>(n) / tile_stride) * h; }
 };
+/// Grid to points by APIC.
+template <class K>
+void gather(const VelocityTile& tile, PointSet& points) {
+  std::vector<double> vx(points.count), vy(points.count);
+  tile_to_points<K, false>(tile, origin, h, {0, points.count}, Retention{}, points,
+                           {vx.data(), vy.data()});
+  for (std::size_t s = 0; s < points.count; ++s) {
+    EXPECT_EQ(vx[s], points[VX][s]);
+    EXPECT_EQ(vy[s], points[VY][s]);
+  }
+}
+
 using Kernels = ::testing::Types<CubicKernel, QuadraticKernel>;
 TYPED_TEST_SUITE(TransferTest, Kernels);
 
@@ -158,7 +170,7 @@ TYPED_TEST(TransferTest, ALinearFieldGoesToTheGridAndBackExactly) {
     EXPECT_NEAR(velocity.vy[n], a[1] + B[1][0] * x + B[1][1] * y, 10 * 1e-9);
   }
   const PointSet before = points;
-  tile_to_points<TypeParam>(velocity, origin, h, {0, points.count}, points);
+  gather<TypeParam>(velocity, points);
   for (std::size_t s = 0; s < points.count; ++s) {
     // 16 terms of size |v| <= 10, each known to a few eps: 1e-13; divided by h in the gradient
     for (const Field f : {VX, VY}) EXPECT_NEAR(points[f][s], before[f][s], 1e-13);
@@ -181,7 +193,7 @@ TYPED_TEST(TransferTest, GatherIsTheBruteForceSum) {
                 origin[1] + static_cast<int>(n) / tile_stride}]
         .velocity = {tile.vx[n], tile.vy[n]};
   }
-  tile_to_points<TypeParam>(tile, origin, h, {0, points.count}, points);
+  gather<TypeParam>(tile, points);
   for (std::size_t s = 0; s < points.count; ++s) {
     reference::Vector v;
     reference::Matrix L;
