@@ -9,6 +9,7 @@
 
 #include "app/command_line.hpp"
 #include "app/read_point_test.hpp"
+#include "calibration/optimise.hpp"
 
 namespace repose::app {
 namespace {
@@ -197,6 +198,50 @@ TEST(ChartCommand, draws_the_point_driver) {
   ASSERT_EQ(run_command_line(6, argv), 0);
   for (const char* const name : {"chart.csv", "error_map.csv"})
     EXPECT_GT(fs::file_size(folder / name), 1000u) << name;
+  fs::remove_all(folder);
+}
+
+// A short run of every algorithm: each has a trace that only ever falls, and the table says of it
+// what the trace says.
+TEST(ChartCommand, draws_every_algorithm_of_a_fit) {
+  const fs::path folder = fs::path(testing::TempDir()) / "repose_chart_fit";
+  fs::remove_all(folder);
+  const std::string out = folder.string();
+  const char* const argv[] = {"repose",    "chart",  "fit", "--quiet",       "-o",
+                              out.c_str(), "--seed", "7",   "--evaluations", "40"};
+  ASSERT_EQ(run_command_line(10, argv), 0);
+  const auto rows_of = [&](const char* name) {
+    std::vector<std::vector<std::string>> rows;
+    std::ifstream file(folder / name);
+    for (std::string line; std::getline(file, line);) {
+      std::vector<std::string>& row = rows.emplace_back();
+      std::istringstream cells(line);
+      for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+    }
+    return rows;
+  };
+  const auto trace = rows_of("chart.csv");
+  const auto table = rows_of("table.csv");
+  ASSERT_EQ(table.size(), 1 + calibration::algorithms().size());
+  for (std::size_t k = 0; k < calibration::algorithms().size(); ++k) {
+    const std::string name(calibration::algorithms()[k].name);
+    SCOPED_TRACE(name);
+    EXPECT_EQ(table[k + 1][0], name);
+    EXPECT_LE(std::stol(table[k + 1][2]), 40 + 1) << "the budget, and one trial to notice its end";
+    double objective = HUGE_VAL;
+    long trials = 0;
+    for (const auto& row : trace) {
+      if (row[0] != name) continue;
+      EXPECT_LE(std::stod(row[4]), objective);  // equal in the last row, which tells the end
+      EXPECT_GE(std::stol(row[1]), trials);
+      objective = std::stod(row[4]);
+      trials = std::stol(row[1]);
+    }
+    EXPECT_EQ(std::stod(table[k + 1][1]), objective);
+    EXPECT_LE(trials, std::stol(table[k + 1][2]));
+  }
+  EXPECT_EQ(trace[1][0], "levenberg_marquardt");
+  EXPECT_LT(std::stod(table[1][1]), 1e-20 * std::stod(trace[1][4])) << "exact data, exact fit";
   fs::remove_all(folder);
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include "calibration/twin.hpp"
 #include "calibration/uncertainty.hpp"
-#include "tests/calibration/twin.hpp"
 
 namespace repose::calibration {
 namespace {

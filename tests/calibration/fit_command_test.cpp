@@ -13,7 +13,7 @@
 #include "app/command_line.hpp"
 #include "app/fit_record.hpp"
 #include "app/read_law.hpp"
-#include "tests/calibration/twin.hpp"
+#include "calibration/twin.hpp"
 
 namespace repose::app {
 namespace {

@@ -1,6 +1,6 @@
 // Synthetic data from every law, fitted from random starts: the parameters must come back.
 
-#include "tests/calibration/twin.hpp"
+#include "calibration/twin.hpp"
 
 #include <chrono>
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/twin.hpp"
 #include "tests/calibration/toy.hpp"
-#include "tests/calibration/twin.hpp"
 
 namespace repose::calibration {
 namespace {

@@ -1,0 +1,206 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/chart.hpp"
+#include "app/interrupt.hpp"
+#include "app/plot/figure.hpp"
+#include "app/plot/gnuplot.hpp"
+#include "app/read_fit.hpp"
+#include "app/result_folder.hpp"
+#include "calibration/twin.hpp"
+#include "repose_version.hpp"
+
+namespace repose::app {
+namespace {
+
+using calibration::Algorithm;
+using calibration::Optimum;
+using calibration::Problem;
+using calibration::TracePoint;
+
+/// Shares of the first objective that the table tells the cost of.
+constexpr std::array levels{1e-2, 1e-6, 1e-12};
+/// Below this share of the first objective nothing but round-off is left; the pictures end here.
+constexpr double floor_of_chart = 1e-20;
+
+struct Run {
+  Algorithm algorithm;
+  Optimum optimum;
+};
+
+/// What is fitted and from where.
+struct Task {
+  std::string name;
+  Problem problem;
+  Eigen::VectorXd start;
+};
+
+/// Five parameters of London clay from three tests without noise: the least objective is 0. The
+/// start lies off every symmetry of the cube.
+Task twin_task() {
+  const calibration::Twin twin = calibration::cam_clay_twin();
+  Problem problem = calibration::twin_problem(twin, calibration::cam_clay_tests());
+  const auto n = problem.parameters();
+  return {"five parameters of Cam-Clay, three tests, no noise", problem,
+          Eigen::VectorXd::LinSpaced(n, 0.3, 0.7)};
+}
+
+Task task_of(const FitFile& file) {
+  Problem problem(calibration::ParameterSpace(file.free), file.targets, file.balance);
+  const Eigen::VectorXd start = problem.space().start();
+  return {file.name, std::move(problem), start};
+}
+
+double first_objective(const Task& task) {
+  calibration::Evaluation at_start;
+  task.problem.evaluate(task.start, false, at_start);
+  return at_start.objective();
+}
+
+/// Trials, with or without derivatives.
+long trials(const TracePoint& p) { return p.evaluations + p.gradients; }
+
+/// The first point of a trace at or below an objective; null if it never came there.
+const TracePoint* first_below(const Optimum& optimum, double objective) {
+  for (const TracePoint& p : optimum.trace)
+    if (p.objective <= objective) return &p;
+  return nullptr;
+}
+
+std::string trace_csv(const std::vector<Run>& runs) {
+  std::string text = "algorithm,trials,gradients,time_s,objective\n";
+  for (const Run& run : runs)
+    for (const TracePoint& p : run.optimum.trace)
+      text += fmt::format("{},{},{},{:.6g},{:.10g}\n", run.algorithm.name, trials(p), p.gradients,
+                          p.seconds, p.objective);
+  return text;
+}
+
+std::string table_csv(const std::vector<Run>& runs, double first) {
+  std::string text = "algorithm,objective,trials,gradients,time_s,end";
+  for (const double level : levels)
+    text += fmt::format(",trials_to_{0:.0e},time_to_{0:.0e}_s", level);
+  text += "\n";
+  for (const Run& run : runs) {
+    const Optimum& o = run.optimum;
+    text += fmt::format("{},{:.10g},{},{},{:.6g},\"{}\"", run.algorithm.name, o.objective,
+                        o.evaluations + o.gradients, o.gradients, o.seconds, o.why);
+    for (const double level : levels) {
+      const TracePoint* p = first_below(o, level * first);
+      text += p == nullptr ? ",," : fmt::format(",{},{:.6g}", trials(*p), p->seconds);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string table_text(const std::vector<Run>& runs, double first) {
+  std::string text = fmt::format("{:28} {:>11} {:>7}", "", "objective", "trials");
+  for (const double level : levels) text += fmt::format(" {:>18}", fmt::format("to {:.0e}", level));
+  text += "\n";
+  for (const Run& run : runs) {
+    const Optimum& o = run.optimum;
+    text += fmt::format("{:28} {:>11.3g} {:>7}", run.algorithm.name, o.objective / first,
+                        o.evaluations + o.gradients);
+    for (const double level : levels) {
+      const TracePoint* p = first_below(o, level * first);
+      text += fmt::format(
+          " {:>18}",
+          p == nullptr ? "-" : fmt::format("{} in {:.1f} ms", trials(*p), 1e3 * p->seconds));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// At most seven algorithms share a panel: as many as colours tell apart.
+std::string_view group_of(const Algorithm& a) {
+  const auto has = [&](std::string_view part) { return a.name.find(part) != a.name.npos; };
+  if (has("DIRECT") || has("STOGO")) return "global: dividing rectangles, branch and bound";
+  if (has("TNEWTON")) return "local, with gradients: truncated Newton";
+  if (a.global) return "global: random and clustering";
+  return a.gradient ? "local, with gradients" : "local, without gradients";
+}
+
+Figure figure_of(const std::vector<Run>& runs, const std::string& task, double first) {
+  Figure figure("Algorithms of a fit", task + "; best objective so far over the first one");
+  figure.columns = 2;
+  std::vector<std::string_view> groups;
+  for (const Run& run : runs)
+    if (const std::string_view g = group_of(run.algorithm);
+        std::find(groups.begin(), groups.end(), g) == groups.end())
+      groups.push_back(g);
+  for (const std::string_view group : groups)
+    for (const bool over_time : {false, true}) {
+      Axes& axes = figure.add_axes();
+      axes.title = std::string(group);
+      axes.x = {over_time ? "time (ms)" : "trials, with or without gradient",
+                AxisScale::logarithmic};
+      axes.y = {"objective / first", AxisScale::logarithmic};
+      std::size_t colour = 0;
+      for (const Run& run : runs) {
+        if (group_of(run.algorithm) != group) continue;
+        std::vector<double> x, y;
+        for (const TracePoint& p : run.optimum.trace) {
+          x.push_back(over_time ? std::max(1e3 * p.seconds, 1e-3) : static_cast<double>(trials(p)));
+          y.push_back(std::max(p.objective / first, floor_of_chart));
+        }
+        if (x.empty()) continue;
+        Style style;
+        style.colour = cycle_colour(colour++);
+        axes.line(std::string(run.algorithm.name), x, y, style);
+      }
+    }
+  return figure;
+}
+
+}  // namespace
+
+ExitCode chart_fit(const CommonOptions& options, const std::string& file, long evaluations) {
+  const ResultFolder folder(options.output.empty() ? ResultFolder::default_path("chart_fit")
+                                                   : std::filesystem::path(options.output));
+  Task task = file.empty()
+                  ? twin_task()
+                  : task_of(read_fit(file, options.sets, options.seed, folder.path() / "runs"));
+  folder.remove_old_outputs();
+  const InterruptGuard interrupt;
+  task.problem.interrupt_by([&] { return interrupt.requested(); });
+  const double first = first_objective(task);
+  calibration::OptimiseOptions settings;
+  settings.max_evaluations = evaluations;
+  settings.x_tolerance = 1e-12;
+  if (options.seed != 0) settings.seed = options.seed;
+
+  std::vector<Run> runs;
+  for (const Algorithm& algorithm : calibration::algorithms()) {
+    if (interrupt.requested()) break;
+    runs.push_back(
+        {algorithm, calibration::optimise(task.problem, algorithm.name, task.start, settings)});
+  }
+  folder.write_file("chart.csv", trace_csv(runs));
+  folder.write_file("table.csv", table_csv(runs, first));
+  try {
+    figure_of(runs, task.name, first).render_svg(folder.file("chart.svg"));
+  } catch (const PlotError& error) {
+    fmt::print(stderr, "warning: no chart.svg: {}\n", error.what());
+  }
+  const std::string status = interrupt.requested() ? "interrupted" : "done";
+  nlohmann::ordered_json summary{{"repose", version_string}, {"kind", "chart_fit"},
+                                 {"status", status},         {"task", task.name},
+                                 {"seed", settings.seed},    {"evaluations", evaluations},
+                                 {"first_objective", first}, {"algorithms", runs.size()}};
+  folder.write_file("summary.json", summary.dump(2) + "\n");
+  if (options.json) fmt::print("{}\n", summary.dump());
+  if (!options.quiet && !options.json)
+    fmt::print(
+        "{}, objective over the first one and the trials it took:\n{}{}: chart.csv, "
+        "table.csv, chart.svg\n",
+        task.name, table_text(runs, first), folder.path().string());
+  return interrupt.requested() ? ExitCode::interrupted : ExitCode::done;
+}
+
+}  // namespace repose::app
