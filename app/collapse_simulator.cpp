@@ -63,7 +63,11 @@ class CollapseSimulator final : public calibration::Simulator {
       for (const double t : e_.times) key += fmt::format(" {}", t);
       for (const std::string& c : e_.channels) key += " " + c;
       const std::filesystem::path kept = e_.cache / (hash_of(key) + ".json");
-      if (!e_.cache.empty() && recall(kept, key, response)) return;
+      if (!e_.cache.empty() && recall(kept, key, response)) {
+        e_.count->recalled.fetch_add(1, std::memory_order_relaxed);
+        return;
+      }
+      e_.count->simulated.fetch_add(1, std::memory_order_relaxed);
       run(file.scene, response);
       if (!e_.cache.empty()) keep(kept, key, response);
     } catch (const InputError&) {

@@ -3,6 +3,7 @@
 /// A full simulation as a fit's simulator: the scene of `repose run`, one law, front and height
 /// over time or the final profile.
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 
@@ -11,6 +12,11 @@
 
 namespace repose::app {
 
+/// Simulations so far, over all threads.
+struct CollapseCount {
+  std::atomic<long> simulated{0}, recalled{0};
+};
+
 struct CollapseExperiment {
   SceneFile scene;
   LawSpec law;                        ///< replaces the law of every body; values come as inputs
@@ -18,6 +24,7 @@ struct CollapseExperiment {
   std::vector<double> times;          ///< of the data [s]; empty for the final profile
   int threads = 1;
   std::filesystem::path cache;  ///< folder of finished runs by hash of their input; empty: none
+  std::shared_ptr<CollapseCount> count = std::make_shared<CollapseCount>();
 };
 
 /// The columns of series.csv that a fit may compare.

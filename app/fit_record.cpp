@@ -123,6 +123,7 @@ Json fit_report(const FitFile& file, const calibration::Problem& problem, const 
     e["unit"] = p.unit;
     e["standard_error"] = number(u.standard_error[k]);
     e["standard_error_if_residuals_were_white"] = number(u.white_error[k]);
+    if (!result.coarse.empty()) e["shift_by_resolution"] = number(u.shift[k]);
     e["interval_95"] = {number(u.interval[i][0]), number(u.interval[i][1])};
     for (const auto& profile : result.profiles) {
       if (profile.parameter != static_cast<int>(i)) continue;
@@ -215,6 +216,23 @@ Json fit_report(const FitFile& file, const calibration::Problem& problem, const 
                    {"gradients", spent.gradients},
                    {"paths", spent.paths},
                    {"failed_trials", spent.failures}}}};
+  if (!result.coarse.empty()) {
+    j["coarse"] = {{"starts", result.coarse.size()},
+                   {"objective", number(calibration::best_of(result.coarse).optimum.objective)}};
+    for (const StartResult& s : result.coarse) {
+      const Eigen::VectorXd v = problem.space().values(s.optimum.z);
+      Json values;
+      for (std::size_t i = 0; i < file.free.size(); ++i)
+        values[file.free[i].name] = number(v[static_cast<Index>(i)]);
+      j["coarse"]["ends"].push_back({{"start", s.index},
+                                     {"objective", number(s.optimum.objective)},
+                                     {"evaluations", s.optimum.evaluations},
+                                     {"gradients", s.optimum.gradients},
+                                     {"values", values}});
+    }
+  }
+  if (const long done = file.runs->simulated, kept = file.runs->recalled; done + kept > 0)
+    j["counts"]["this_session"]["scenes"] = {{"simulated", done}, {"recalled", kept}};
   j["solver"] = {{"global", file.options.global},
                  {"local", file.options.local},
                  {"seed", file.options.seed},

@@ -15,7 +15,8 @@ struct FitResult {
   std::vector<calibration::StartResult> starts;
   calibration::Uncertainty uncertainty;
   std::vector<calibration::Profile> profiles;
-  Eigen::MatrixXd bootstrap;  ///< repeats × parameters; empty if not asked for
+  std::vector<calibration::StartResult> coarse;  ///< ends of the coarse search; empty without one
+  Eigen::MatrixXd bootstrap;                     ///< repeats × parameters; empty if not asked for
   std::vector<calibration::Cluster> clusters;
   const calibration::Optimum& best() const { return calibration::best_of(starts).optimum; }
 };

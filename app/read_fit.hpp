@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "app/collapse_simulator.hpp"
 #include "app/input_file.hpp"
 #include "calibration/multistart.hpp"
 #include "models/registry.hpp"
@@ -31,7 +32,11 @@ struct FitFile {
   bool balance = true;
   calibration::FitOptions options;
   bool profiles = true;
-  int bootstrap = 0;               ///< repeats
+  int bootstrap = 0;  ///< repeats
+  /// Standard deviation of the fine scenes' discretisation error over the change from coarse to
+  /// fine at the coarse optimum.
+  double resolution_error = 1.0;
+  std::shared_ptr<CollapseCount> runs = std::make_shared<CollapseCount>();
   std::string resolved;            ///< the input as TOML, --set included, tables by absolute path
   std::string fingerprint;         ///< of everything that the result of a start depends on
   std::vector<std::string> notes;  ///< what was made of the input that the user may not expect

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "models/parameter.hpp"
+
 namespace repose::calibration {
 namespace {
 
@@ -66,9 +68,9 @@ struct Filler {
 
   void rows(Index c) const {
     const Channel& channel = target.channels[static_cast<std::size_t>(c)];
-    const double s = scale_of(channel);
     const Index n = target.rows(), done = std::min(n, response.y.rows());
     for (Index i = 0; i < n; ++i) {
+      const double s = scale_of(channel, i);
       double y = channel.observed[0];
       if (i < done)
         y = response.y(i, c);
@@ -85,12 +87,12 @@ struct Filler {
 
   void along(Index c) const {
     const Channel& channel = target.channels[static_cast<std::size_t>(c)];
-    const double s = scale_of(channel);
     const Index n = target.rows();
     const Eigen::VectorXd y = response.y.col(c);
-    // one range of x counts as much as one range of y
-    const double sx = range_of(target.x) * s / range_of(channel.observed);
     for (Index i = 0; i < n; ++i) {
+      const double s = scale_of(channel, i);
+      // one range of x counts as much as one range of y
+      const double sx = range_of(target.x) * s / range_of(channel.observed);
       const double px = target.x[i], py = channel.observed[i];
       const bool distance = target.compare == Compare::distance;
       const OnCurve at = distance ? nearest(response.x, y, px, py, sx, s) : at_x(response.x, px);
@@ -132,6 +134,20 @@ struct Filler {
 
 double scale_of(const Channel& channel) {
   return channel.noise ? *channel.noise : range_of(channel.observed);
+}
+
+double scale_of(const Channel& channel, Index row) {
+  return channel.row_noise.size() > 0 ? channel.row_noise[row] : scale_of(channel);
+}
+
+void declare_noise(Channel& channel, double absolute, double relative) {
+  channel.row_noise = (absolute * absolute + (relative * channel.observed.array()).square()).sqrt();
+  if (!(channel.row_noise.minCoeff() > 0.0))
+    throw InputError("noise", "the noise of " + channel.name +
+                                  " is a share of its value, which is 0 in a row: give an absolute "
+                                  "part as well");
+  channel.noise =
+      std::sqrt(channel.row_noise.squaredNorm() / static_cast<double>(channel.row_noise.size()));
 }
 
 void misfit(const Target& target, const Response& response, Misfit& out) {

@@ -15,6 +15,8 @@ struct Channel {
   std::string name;
   Eigen::VectorXd observed;
   std::optional<double> noise;  ///< standard deviation of the measurement, in the channel's unit
+  /// Row by row where it differs (then `noise` is their root mean square); empty: the same in all.
+  Eigen::VectorXd row_noise{};
   double weight = 1.0;
 };
 
@@ -51,6 +53,11 @@ struct Target {
 
 /// What a channel's residual is divided by: its noise, or the range of what was measured.
 double scale_of(const Channel& channel);
+/// The same for one row.
+double scale_of(const Channel& channel, Eigen::Index row);
+/// A noise of √(absolute² + (relative |observed|)²), given the channel's observed values. Errors:
+/// InputError (key "noise") if it vanishes in a row.
+void declare_noise(Channel& channel, double absolute, double relative);
 
 /// Unweighted residuals of one simulation, channel after channel, in units of scale_of(); `slope`
 /// (rows × wanted inputs) if the response has derivatives. Rows that a broken-off path did not

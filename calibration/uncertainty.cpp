@@ -95,10 +95,13 @@ std::vector<ChannelScore> score(const Problem& problem, const VectorXd& z) {
       s.channel = c;
       s.rows = n;
       const double mean_square = r.squaredNorm() / static_cast<double>(n);
-      s.rms = scale * std::sqrt(mean_square);
+      // in the channel's unit whatever the noise of each row; a distance is between curves
+      VectorXd off = r * scale;
+      if (channel.row_noise.size() > 0) off = r.cwiseProduct(channel.row_noise);
+      s.rms = std::sqrt(off.squaredNorm() / static_cast<double>(n));
       const double range = channel.observed.maxCoeff() - channel.observed.minCoeff();
       s.relative_rms = range > 0.0 ? s.rms / range : std::nan("");
-      s.bias = scale * r.mean();
+      s.bias = off.mean();
       s.chi2_per_row = channel.noise ? mean_square : std::nan("");
       s.lag_correlation = lag_correlation(r);
       r.cwiseAbs().maxCoeff(&s.worst_row);
@@ -119,7 +122,8 @@ std::vector<ChannelScore> score(const Problem& problem, const VectorXd& z) {
   return scores;
 }
 
-Uncertainty uncertainty(const Problem& problem, const VectorXd& z) {
+Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
+                        const VectorXd& simulator_error) {
   const ParameterSpace& space = problem.space();
   const Index n = problem.parameters();
   Uncertainty u;
@@ -160,6 +164,7 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z) {
 
   MatrixXd cov = MatrixXd::Zero(n, n), cov_white = cov;
   VectorXd unknown = VectorXd::Zero(n);
+  u.shift = unknown;
   if (m > 0) {
     const VectorXd size = J.colwise().norm().transpose().cwiseMax(1e-300);
     const Eigen::JacobiSVD<MatrixXd> svd(J * size.cwiseInverse().asDiagonal(),
@@ -176,7 +181,12 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z) {
     }
     const MatrixXd pseudo = size.cwiseInverse().asDiagonal() * svd.matrixV() *
                             inverse.asDiagonal() * svd.matrixU().transpose();
-    const MatrixXd c_full = pseudo * full.asDiagonal() * pseudo.transpose();
+    MatrixXd c_full = pseudo * full.asDiagonal() * pseudo.transpose();
+    if (simulator_error.size() == J.rows()) {
+      const VectorXd shift = -pseudo * simulator_error;
+      c_full += shift * shift.transpose();
+      for (Index i = 0; i < m; ++i) u.shift[inside[static_cast<std::size_t>(i)]] = shift[i];
+    }
     const MatrixXd c_white = pseudo * white.asDiagonal() * pseudo.transpose();
     for (Index i = 0; i < m; ++i) {
       const Index a = inside[static_cast<std::size_t>(i)];
@@ -190,6 +200,7 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z) {
   }
   const MatrixXd slopes = space.slopes(z);
   const MatrixXd value_cov = slopes * cov * slopes.transpose();
+  u.shift = slopes * u.shift;
   const MatrixXd value_white = slopes * cov_white * slopes.transpose();
   u.standard_error = value_cov.diagonal().cwiseSqrt();
   u.white_error = value_white.diagonal().cwiseSqrt();
@@ -339,14 +350,17 @@ MatrixXd bootstrap(const Problem& problem, const VectorXd& z, int repeats, std::
       for (std::size_t c = 0; c < t.channels.size(); ++c) {
         const auto col = static_cast<Index>(c);
         const VectorXd r = t.channels[c].observed - fitted[k].col(col);
-        const VectorXd centred = (r.array() - r.mean()).matrix() * widen;
+        VectorXd sd(r.size());  // rows of different noise exchange their residuals in units of it
+        for (Index i = 0; i < r.size(); ++i) sd[i] = scale_of(t.channels[c], i);
+        const VectorXd units = r.cwiseQuotient(sd);
+        const VectorXd centred = (units.array() - units.mean()).matrix() * widen;
         const auto n = static_cast<std::uint64_t>(r.size());
         const auto block =
             static_cast<Index>(std::ceil(correlation_factor(lag_correlation(r), r.size())));
         for (Index i = 0; i < r.size();) {
           const auto from = static_cast<Index>(random() % n);
           for (Index j = 0; j < block && i < r.size(); ++j, ++i)
-            observed[k](i, col) += centred[(from + j) % r.size()];
+            observed[k](i, col) += sd[i] * centred[(from + j) % r.size()];
         }
       }
     }

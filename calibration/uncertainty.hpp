@@ -37,6 +37,7 @@ struct Combination {
 struct Uncertainty {
   Eigen::VectorXd values;
   Eigen::VectorXd standard_error;  ///< of the values; infinite where the data say nothing
+  Eigen::VectorXd shift;           ///< of the values by the simulator's own error; 0 without one
   Eigen::VectorXd white_error;     ///< the same if residuals were uncorrelated noise
   Eigen::MatrixXd correlation;     ///< of the values; 0 where undefined
   std::vector<std::array<double, 2>> interval;  ///< 95 %, within the bounds
@@ -51,7 +52,10 @@ struct Uncertainty {
 /// 1/variance. A channel's variance v_c is its declared noise, or more where its misfit is more
 /// than noise (99 %), or the scatter of its residuals where none is declared; times (1 + ρ)/(1 − ρ)
 /// where neighbouring residuals are correlated (Bartlett 1946).
-Uncertainty uncertainty(const Problem& problem, const Eigen::VectorXd& z);
+/// simulator_error: a typical error of the simulator in r (empty: none), one standard deviation of
+/// unknown sign; what it moves the parameters by, J⁺ error, is added as s sᵀ to the covariance.
+Uncertainty uncertainty(const Problem& problem, const Eigen::VectorXd& z,
+                        const Eigen::VectorXd& simulator_error = {});
 
 /// Student's t, two-sided 95 %.
 double t_quantile(double freedom);

@@ -80,7 +80,7 @@ class FitRun {
                       static_cast<std::size_t>(options_.threads));
     const InterruptGuard interrupt;
     problem_.interrupt_by([&] { return interrupt.requested(); });
-    if (!file_.coarse.empty() && arguments_.merge.empty())
+    if (!file_.coarse.empty())
       coarse_to_fine(done, interrupt);
     else if (arguments_.merge.empty())
       result_.starts =
@@ -133,9 +133,14 @@ class FitRun {
                       const InterruptGuard& interrupt) {
     calibration::Problem coarse(problem_.space(), file_.coarse, file_.balance);
     coarse.interrupt_by([&] { return interrupt.requested(); });
-    const auto starts =
-        calibration::run_starts(coarse, file_.options, done, [&](const auto& s) { after(s); });
+    // merged shares are refined again, from the best of all
+    auto starts =
+        arguments_.merge.empty()
+            ? calibration::run_starts(coarse, file_.options, done, [&](const auto& s) { after(s); })
+            : done;
+    std::erase_if(starts, [](const auto& s) { return s.optimum.z.size() == 0; });
     if (starts.empty()) return;
+    result_.coarse = starts;
     calibration::StartResult fine;
     fine.global = calibration::best_of(starts).optimum;
     fine.from = fine.global.z;
@@ -153,9 +158,28 @@ class FitRun {
                  fine.optimum.evaluations + fine.optimum.gradients);
   }
 
+  /// What the residuals change by from the coarse scenes to the fine ones at z, as a measure of the
+  /// error that the fine ones still have; empty if there are none or a run broke off.
+  Eigen::VectorXd resolution_error(const Eigen::VectorXd& z) {
+    if (file_.coarse.empty() || !(file_.resolution_error > 0.0)) return {};
+    const calibration::Problem coarse(problem_.space(), file_.coarse, file_.balance);
+    calibration::Evaluation there, here;
+    coarse.evaluate(z, false, there);
+    problem_.evaluate(z, false, here);
+    if (there.failed || here.failed) {
+      file_.notes.push_back("the intervals leave out the error of resolution: a run broke off");
+      return {};
+    }
+    file_.notes.push_back(
+        fmt::format("the intervals hold an error of resolution of {:.3g} times the change from "
+                    "coarse to fine",
+                    file_.resolution_error));
+    return file_.resolution_error * (here.r - there.r);
+  }
+
   void analyse(bool interrupted) {
     const auto& best = result_.best();
-    result_.uncertainty = calibration::uncertainty(problem_, best.z);
+    result_.uncertainty = calibration::uncertainty(problem_, best.z, resolution_error(best.z));
     result_.clusters = calibration::clusters(problem_, result_.starts);
     if (interrupted || best.failed) return;
     if (file_.profiles)
