@@ -108,9 +108,10 @@ Figure fit_picture(const FitFile& file, const calibration::Problem& problem,
 }
 
 Figure fit_diagnostics(const FitFile& file, const FitResult& result) {
-  Figure figure(
-      file.name + ": how well the data determine the parameters",
-      fmt::format("{} starts, {} distinct optima", result.starts.size(), result.clusters.size()));
+  Figure figure(file.name + ": how well the data determine the parameters",
+                fmt::format("{} start{}, {} distinct {}", result.starts.size(),
+                            result.starts.size() == 1 ? "" : "s", result.clusters.size(),
+                            result.clusters.size() == 1 ? "optimum" : "optima"));
   figure.columns = 3;
   figure.panel_width_px = 300.0;
   figure.panel_height_px = 220.0;
@@ -128,7 +129,7 @@ Figure fit_diagnostics(const FitFile& file, const FitResult& result) {
   }
   // parameter i against j, coloured by correlation: a table that is read at a glance
   Axes& correlation = figure.add_axes();
-  correlation.title = "correlation (rows and columns in the order of fit.json)";
+  correlation.title = "correlation";
   std::vector<double> a, b, r;
   const Index n = result.uncertainty.correlation.rows();
   for (Index i = 0; i < n; ++i)
@@ -138,7 +139,12 @@ Figure fit_diagnostics(const FitFile& file, const FitResult& result) {
       r.push_back(result.uncertainty.correlation(i, j));
     }
   const double edge = static_cast<double>(n) + 0.5;
-  correlation.x = {"parameter", AxisScale::linear, 0.5, edge};
+  std::string names;
+  for (std::size_t i = 0; i < file.free.size(); ++i)
+    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, file.free[i].name);
+  constexpr std::size_t widest = 44;  // characters below a panel
+  if (names.size() > widest) names = "parameter, in the order of fit.json";
+  correlation.x = {names, AxisScale::linear, 0.5, edge};
   correlation.y = {"parameter", AxisScale::linear, 0.5, edge};
   correlation.scatter(a, b, r, {"correlation", AxisScale::linear, -1.0, 1.0}, {18.0, {}});
   for (const auto& profile : result.profiles) {
