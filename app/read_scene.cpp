@@ -116,14 +116,13 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   scene.transfer = static_cast<mpm::Transfer>(
       table.choice("transfer", {mpm::transfer_names.begin(), mpm::transfer_names.end()},
                    static_cast<std::size_t>(scene.transfer)));
-  if (scene.transfer == mpm::Transfer::relaxed) {
-    scene.relaxation_time = table.optional_number(
-        {"relaxation_time", "s", "of the points' own velocity towards the grid's", positive, {}});
-    if (!scene.relaxation_time && scene.gravity == 0.0)
-      table.report("transfer", "without gravity, relaxed needs step.relaxation_time [s]");
-  } else if (table.has("relaxation_time")) {
+  scene.relaxation_time = table.optional_number(
+      {"relaxation_time", "s", "of the points' own velocity towards the grid's", positive, {}});
+  const bool relaxed = scene.transfer == mpm::Transfer::relaxed;
+  if (relaxed && !scene.relaxation_time && scene.gravity == 0.0)
+    table.report("transfer", "without gravity, relaxed needs step.relaxation_time [s]");
+  if (!relaxed && scene.relaxation_time)
     table.report("relaxation_time", "only step.transfer = \"relaxed\" has a relaxation time");
-  }
   scene.courant = table.number(
       {"courant", "-", "share of the stable step", Range{0.0, 1.0, true, false}, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});

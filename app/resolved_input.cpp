@@ -57,7 +57,7 @@ std::string unit_and_doc(const ParamInfo& info) {
 /// "key = value" in a column, then a comment.
 std::string line(std::string_view key, std::string_view value, std::string_view comment = "") {
   const std::string text = fmt::format("{} = {}", key, value);
-  return comment.empty() ? text + "\n" : fmt::format("{:<28}# {}\n", text, comment);
+  return comment.empty() ? text + "\n" : fmt::format("{:<27} # {}\n", text, comment);
 }
 
 std::string law_table(const LawSpec& spec) {

@@ -257,7 +257,7 @@ void check_law(const Scene& scene, std::size_t i) {
 }  // namespace
 
 double default_relaxation_time(const Scene& scene) {
-  return scene.gravity > 0.0 ? 0.01 * std::sqrt(scene.h / scene.gravity) : HUGE_VAL;
+  return scene.gravity > 0.0 ? 0.03 * std::sqrt(scene.h / scene.gravity) : HUGE_VAL;
 }
 
 double point_spacing(const Scene& scene) { return scene.h / points_per_edge(scene); }

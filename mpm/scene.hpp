@@ -83,7 +83,7 @@ struct Scene {
 /// Distance between neighbouring points of a body at the start [m]: h/√points_per_cell.
 double point_spacing(const Scene& scene);
 
-/// 0.01 √(h/g): a hundredth of the time in which a grid cell falls through its own size [s]. Short
+/// 0.03 √(h/g), of the order of the largest stable step of soft grains [s]. Short
 /// enough to quieten what the grid cannot carry, long enough that what it carries loses less than
 /// in APIC at any stable step; docs/transfers.md has the measurements. HUGE_VAL without gravity.
 double default_relaxation_time(const Scene& scene);

@@ -226,6 +226,15 @@ TEST(ReadSceneErrors, geometry) {
             "...");
 }
 
+TEST(ReadSceneErrors, relaxation_time_belongs_to_relaxed) {
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"relaxed\"\nrelaxation_time = 1e-3\n"), "");
+  EXPECT_EQ(problems(granular + "[step]\nrelaxation_time = 1e-3\n"),
+            "s.toml:19:1: only step.transfer = \"relaxed\" has a relaxation time");
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"relaxd\"\n"),
+            "s.toml:19:1: step.transfer must be one of \"pic\", \"flip\", \"apic\", \"aflip\", "
+            "\"relaxed\"; got the string \"relaxd\"; did you mean \"relaxed\"?");
+}
+
 TEST(ReadSceneErrors, courant_or_dt) {
   EXPECT_EQ(problems(granular + "[step]\ncourant = 0.3\ndt = 1e-5\n"),
             "s.toml:20:1: give either step.courant or step.dt: a fixed step leaves no choice");
