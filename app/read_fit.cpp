@@ -108,14 +108,15 @@ FitFile read_fit(const std::filesystem::path& file, std::span<const std::string>
   if (toml::array* targets = resolved["target"].as_array())
     for (auto& node : *targets)
       if (toml::table* t = node.as_table())
-        if (const auto data = (*t)["data"].value<std::string>())
-          t->insert_or_assign(
-              "data",
-              std::filesystem::absolute(file.parent_path() / *data).lexically_normal().string());
+        for (const char* key : {"data", "scene"})
+          if (const auto name = (*t)[key].value<std::string>())
+            t->insert_or_assign(
+                key,
+                std::filesystem::absolute(file.parent_path() / *name).lexically_normal().string());
   std::ostringstream text;
   text << resolved << "\n";
   out.resolved = std::move(text).str();
-  std::string key = out.resolved + fmt::format("seed {}", out.options.seed);
+  std::string key = out.resolved + out.fingerprint + fmt::format("seed {}", out.options.seed);
   for (const calibration::Target& t : out.targets)
     for (const auto& channel : t.channels)
       for (Eigen::Index i = 0; i < t.rows(); ++i)

@@ -63,6 +63,10 @@ void read_solver(TomlReader solver, std::uint64_t seed, FitFile& out) {
 
 void read_uncertainty(TomlReader table, FitFile& out) {
   out.profiles = table.boolean("profile", true);
+  out.resolution_error = table.number(
+      {"resolution", "-",
+       "error of the fine scenes over the change from coarse to fine; 0: none is allowed for",
+       Range{0.0, 100.0}, out.resolution_error});
   out.bootstrap =
       static_cast<int>(table.integer("bootstrap", "refits of resampled data", 0, 100000, 0));
 }

@@ -7,6 +7,7 @@
 
 #include "app/collapse_simulator.hpp"
 #include "app/read_scene.hpp"
+#include "app/resolved_input.hpp"
 
 namespace repose::app {
 
@@ -62,6 +63,32 @@ std::optional<Quantity> quantity(TomlReader& table, std::string_view key, const 
   return {};
 }
 
+/// noise = { q_Pa = 2e3, mu = { absolute = 0.001, relative = 0.01 } }
+void read_noise(TomlReader& noise, calibration::Channel& channel) {
+  const toml::node* node = noise.get(channel.name);
+  if (node == nullptr || !node->is_table()) {
+    channel.noise = noise.optional_number(
+        {channel.name, "-", "standard deviation of the measurement", positive, {}});
+    return;
+  }
+  TomlReader parts = noise.table(channel.name);
+  const auto absolute = parts.optional_number(
+      {"absolute", "-", "standard deviation of the measurement", positive, {}});
+  const auto relative = parts.optional_number(
+      {"relative", "-", "standard deviation as a share of the value", positive, {}});
+  if (!absolute && !relative) {
+    noise.report(channel.name,
+                 fmt::format("{} needs absolute, relative or both", noise.path_of(channel.name)));
+    return;
+  }
+  if (channel.observed.size() == 0) return;
+  try {
+    calibration::declare_noise(channel, absolute.value_or(0.0), relative.value_or(0.0));
+  } catch (const InputError& error) {
+    noise.report(channel.name, fmt::format("{}: {}", noise.path_of(channel.name), error.what()));
+  }
+}
+
 std::vector<calibration::Channel> read_channels(TomlReader& table,
                                                 const std::vector<std::string>& y,
                                                 const FitTable& data) {
@@ -71,12 +98,11 @@ std::vector<calibration::Channel> read_channels(TomlReader& table,
   for (std::size_t c = 0; c < y.size(); ++c) {
     calibration::Channel channel;
     channel.name = y[c];
-    channel.noise =
-        noise.optional_number({y[c], "-", "standard deviation of the measurement", positive, {}});
     channel.weight = weights.number({y[c], "-", "weight of the channel", positive, 1.0});
     if (c < data.y.size())
       channel.observed = Eigen::Map<const Eigen::VectorXd>(
           data.y[c].data(), static_cast<Eigen::Index>(data.y[c].size()));
+    read_noise(noise, channel);
     channels.push_back(std::move(channel));
   }
   return channels;
@@ -154,10 +180,13 @@ void TargetReader::read_scene_target(TomlReader& table, const FitTable& data, Ta
     InputFile input = InputFile::read(path, with);
     CollapseExperiment e;
     e.scene = read_scene(input);
+    // the fit file alone does not tell all that its starts depend on
+    out_.fingerprint += resolved_input(e.scene, "");
     e.law = out_.law;
     for (const auto& channel : target.channels) e.channels.push_back(channel.name);
     if (!profile) e.times = data.x;
     e.cache = cache_;
+    e.count = out_.runs;
     return std::shared_ptr<const calibration::Simulator>(make_collapse_simulator(std::move(e)));
   };
   if (profile) target.compare = calibration::Compare::interpolate;
