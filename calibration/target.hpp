@@ -15,9 +15,9 @@ struct Channel {
   std::string name;
   Eigen::VectorXd observed;
   std::optional<double> noise;  ///< standard deviation of the measurement, in the channel's unit
+  double weight = 1.0;
   /// Row by row where it differs (then `noise` is their root mean square); empty: the same in all.
   Eigen::VectorXd row_noise{};
-  double weight = 1.0;
 };
 
 /// How a simulated curve meets the data.
