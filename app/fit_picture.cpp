@@ -76,8 +76,9 @@ Figure fit_picture(const FitFile& file, const calibration::Problem& problem,
     const MatrixXd sd = prediction_sd(problem, result, k);
     const MatrixXd simulated = problem.predict(k, result.best().z).simulated;
     const auto [x_label, x_factor] = label(t.x_name);
-    const bool log_x = t.x.minCoeff() > 0.0 && t.x.maxCoeff() > 8.0 * t.x.minCoeff() &&
-                       !t.x_name.starts_with("eps_");
+    // strains, times and places are read evenly; pressures, rates and inertial numbers by decades
+    const bool even = t.x_name.starts_with("eps_") || t.x_name == "time_s" || t.x_name == "x_m";
+    const bool log_x = !even && t.x.minCoeff() > 0.0 && t.x.maxCoeff() > 8.0 * t.x.minCoeff();
     const AxisScale scale = log_x ? AxisScale::logarithmic : AxisScale::linear;
     const auto x = scaled(t.x, x_factor);
     // a band needs x in order; loading and unloading would fold it
