@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/fingerprint.hpp"
 #include "app/resolved_input.hpp"
 #include "mpm/atomic_file.hpp"
 #include "mpm/simulation.hpp"
@@ -26,12 +27,6 @@ double read(const mpm::SeriesRow& row, std::string_view channel) {
   if (channel == "height_m") return row.height_m;
   if (channel == "kinetic_J_per_m") return row.kinetic_J_per_m;
   return row.potential_J_per_m;
-}
-
-std::string hash_of(const std::string& text) {  // FNV-1a, 64 bit
-  std::uint64_t h = 0xcbf29ce484222325ULL;
-  for (const unsigned char c : text) h = (h ^ c) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", h);
 }
 
 class CollapseSimulator final : public calibration::Simulator {
@@ -62,7 +57,7 @@ class CollapseSimulator final : public calibration::Simulator {
       std::string key = resolved_input(file, "");
       for (const double t : e_.times) key += fmt::format(" {}", t);
       for (const std::string& c : e_.channels) key += " " + c;
-      const std::filesystem::path kept = e_.cache / (hash_of(key) + ".json");
+      const std::filesystem::path kept = e_.cache / (fingerprint_of(key) + ".json");
       if (!e_.cache.empty() && recall(kept, key, response)) {
         e_.count->recalled.fetch_add(1, std::memory_order_relaxed);
         return;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/fingerprint.hpp"
 #include "app/read_fit_parameters.hpp"
 #include "app/read_fit_solver.hpp"
 #include "app/read_fit_target.hpp"
@@ -86,13 +87,6 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
   return overrides;
 }
 
-/// FNV-1a, 64 bit
-std::string hash_of(const std::string& text) {
-  std::uint64_t h = 0xcbf29ce484222325ULL;
-  for (const unsigned char c : text) h = (h ^ c) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", h);
-}
-
 }  // namespace
 
 FitFile read_fit(const std::filesystem::path& file, std::span<const std::string> overrides,
@@ -121,7 +115,7 @@ FitFile read_fit(const std::filesystem::path& file, std::span<const std::string>
     for (const auto& channel : t.channels)
       for (Eigen::Index i = 0; i < t.rows(); ++i)
         key += fmt::format(" {} {}", t.x[i], channel.observed[i]);
-  out.fingerprint = hash_of(key);
+  out.fingerprint = fingerprint_of(key);
   return out;
 }
 

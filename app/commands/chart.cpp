@@ -33,6 +33,8 @@ Command add_chart(CLI::App& root) {
   add_set(*verb, *options);
   add_quiet(*verb, *options);
   return {verb, options, [options, what, file, evaluations] {
+            if (file->empty() && !options->sets.empty())
+              throw BadInput({"--set changes the keys of a fit file: repose chart fit FIT.toml"});
             if (*what == "fit") return chart_fit(*options, *file, *evaluations);
             if (!file->empty())
               throw BadInput({"repose chart point takes no file; it charts its own six paths"});
