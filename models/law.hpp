@@ -59,6 +59,9 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 ///
 ///   name, option_key, option, doc    strings; the option selects among the forms of one name
 ///                                    ("form", "compression"; empty where a law has one form only)
+///   has_stress_memory                the stress at the start of a step matters
+///   iterates                         update() runs a loop; batches then go through it two packs at
+///                                    a time
 ///   parameters, state                constexpr tables
 ///   complete(theta)                  derives absent optional values, checks conditions between
 ///                                    parameters (κ < λ); throws InputError
@@ -85,6 +88,7 @@ concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
   {std::span<const ParamInfo>(L::parameters)};
   {std::span<const StateField>(L::state)};
   { L::has_stress_memory } -> std::convertible_to<bool>;
+  { L::iterates } -> std::convertible_to<bool>;
   {L::complete(theta)};
   { L::update(P, inc, stress, state) } -> std::same_as<bool>;
   {L::rate(P, stress, state, x, stress, Branch::elastic, stress, state)};

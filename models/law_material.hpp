@@ -12,12 +12,10 @@ class LawMaterial final : public Material {
  public:
   using Theta = std::span<const double>;
 
-  explicit LawMaterial(std::vector<double> theta) : Material(std::move(theta)) {
-    plain_ = L::template Params<double>::from(this->theta());
-    std::vector<Pack> wide;
-    for (const double x : this->theta()) wide.emplace_back(x);
-    packed_ = L::template Params<Pack>::from(std::span<const Pack>(wide));
-  }
+  explicit LawMaterial(std::vector<double> theta)
+      : Material(std::move(theta)),
+        plain_(L::template Params<double>::from(this->theta())),
+        packed_(parameters<Pack>()) {}
 
   static const LawInfo& info() {
     static constexpr LawInfo table{L::name,
@@ -34,61 +32,24 @@ class LawMaterial final : public Material {
 
   UpdateReport update(const Batch& batch) const override {
     UpdateReport report;
-    const auto P = packed_;  // a copy that no store can alias, so that it may stay in registers
-    const Pack zero(0.0);
-    const Pack dt(batch.dt);
-    const Pack inv_dt(batch.dt > 0.0 ? 1.0 / batch.dt : 0.0);
-    const auto bad_dt = !(dt >= zero);
-    for (std::size_t i = 0; i < batch.count; i += pack_size) {
-      Increment<Pack, 4> inc;
-      inc.dt = dt;
-      for (int k = 0; k < 4; ++k) inc.strain[k] = load(batch.strain[index(k)] + i);
-      // ρ after the step: d ln ρ = −tr D dt, exact for a constant rate of logarithmic strain
-      const Pack density_before = load(batch.density + i);
-      inc.density = density_before * exp(-trace(inc.strain));
-      const Point given = load_point(batch, i);
-      Point point = given;
-      if (batch.spin != nullptr)
-        point.stress = rotated_in_plane(point.stress, load(batch.spin + i));
-      const Sym<Pack, 4> before = point.stress;
-      auto failed = L::update(P, inc, point.stress, point.state);
-      failed = failed || bad_dt || !(inc.density > zero) || !finite(inc.density) ||
-               !finite(contract(before, before));
-      Pack work = Pack(0.5) * contract(before + point.stress, inc.strain);
-      if (any(failed)) {
-        note_failure(failed, i, batch.count, report);
-        for (int k = 0; k < 4; ++k) {
-          point.stress[k] = select(failed, given.stress[k], point.stress[k]);
-          inc.strain[k] = select(failed, zero, inc.strain[k]);
-        }
-        for (std::size_t k = 0; k < L::state.size(); ++k)
-          point.state[k] = select(failed, given.state[k], point.state[k]);
-        inc.density = select(failed, density_before, inc.density);
-        work = select(failed, zero, work);
-      }
-      store(batch, i, point, inc.density);
-      if (batch.work != nullptr) work.store_unaligned(batch.work + i);
-      if (batch.modulus != nullptr)
-        L::modulus(P, point.stress, point.state, inc.density).store_unaligned(batch.modulus + i);
-      if (batch.viscosity != nullptr)
-        L::viscosity(P, point.stress, inc.density, inv_dt * inc.strain)
-            .store_unaligned(batch.viscosity + i);
-    }
+    using T = std::conditional_t<L::iterates, Twin, Pack>;
+    const auto P = parameters<T>();  // no store can alias it, so that it may stay in registers
+    for (std::size_t i = 0; i < batch.count; i += T::size) update<T>(P, batch, i, report);
     return report;
   }
 
   void stored_energy(const Batch& batch, double* energy) const override {
-    for (std::size_t i = 0; i < batch.count; i += pack_size) {
-      const Point point = load_point(batch, i);
-      L::stored_energy(packed_, point.stress, point.state, load(batch.density + i))
+    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+      const auto point = load_point<Pack>(batch, i);
+      L::stored_energy(packed_, point.stress, point.state, load<Pack>(batch.density + i))
           .store_unaligned(energy + i);
     }
   }
 
   void modulus(const Batch& batch, double* rho_c2) const override {
-    for (std::size_t i = 0; i < batch.count; i += pack_size) {
-      const Point point = load_point(batch, i);
-      L::modulus(packed_, point.stress, point.state, load(batch.density + i))
+    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+      const auto point = load_point<Pack>(batch, i);
+      L::modulus(packed_, point.stress, point.state, load<Pack>(batch.density + i))
           .store_unaligned(rho_c2 + i);
     }
   }
@@ -99,34 +60,86 @@ class LawMaterial final : public Material {
   double density_at(double p, double ocr) const override { return L::density_at(plain_, p, ocr); }
 
  private:
+  template <class T>
   struct Point {
-    Sym<Pack, 4> stress;
-    typename L::template State<Pack> state;
+    Sym<T, 4> stress;
+    typename L::template State<T> state;
   };
 
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-  static Pack load(const double* from) { return Pack::load_unaligned(from); }
+  template <class T>
+  typename L::template Params<T> parameters() const {
+    std::array<T, L::parameters.size()> wide;
+    for (std::size_t k = 0; k < wide.size(); ++k) wide[k] = T(theta()[k]);
+    return L::template Params<T>::from(std::span<const T>(wide));
+  }
 
-  static Point load_point(const Batch& batch, std::size_t i) {
-    Point point;
-    for (int k = 0; k < 4; ++k) point.stress[k] = load(batch.stress[index(k)] + i);
-    for (std::size_t k = 0; k < L::state.size(); ++k) point.state[k] = load(batch.state[k] + i);
+  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
+  template <class T>
+  static T load(const double* from) {
+    return T::load_unaligned(from);
+  }
+
+  template <class T>
+  static Point<T> load_point(const Batch& batch, std::size_t i) {
+    Point<T> point;
+    for (int k = 0; k < 4; ++k) point.stress[k] = load<T>(batch.stress[index(k)] + i);
+    for (std::size_t k = 0; k < L::state.size(); ++k) point.state[k] = load<T>(batch.state[k] + i);
     return point;
   }
 
-  static void store(const Batch& batch, std::size_t i, const Point& point, const Pack& density) {
+  /// Updates the points i … i + T::size − 1 of a batch.
+  template <class T>
+  [[gnu::always_inline]] static void update(const typename L::template Params<T>& P,
+                                            const Batch& batch, std::size_t i,
+                                            UpdateReport& report) {
+    using std::exp;
+    const T zero(0.0);
+    Increment<T, 4> inc;
+    inc.dt = T(batch.dt);
+    for (int k = 0; k < 4; ++k) inc.strain[k] = load<T>(batch.strain[index(k)] + i);
+    // ρ after the step: d ln ρ = −tr D dt, exact for a constant rate of logarithmic strain
+    const T density_before = load<T>(batch.density + i);
+    inc.density = density_before * exp(T(-trace(inc.strain)));
+    const Point<T> given = load_point<T>(batch, i);
+    Point<T> point = given;
+    if (batch.spin != nullptr)
+      point.stress = rotated_in_plane(point.stress, load<T>(batch.spin + i));
+    const Sym<T, 4> before = point.stress;
+    auto failed = L::update(P, inc, point.stress, point.state);
+    failed = failed || !(inc.dt >= zero) || !(inc.density > zero) || !finite(inc.density) ||
+             !finite(contract(before, before));
+    T work = T(0.5) * contract(before + point.stress, inc.strain);
+    if (any(failed)) {
+      note_failure<T>(failed, i, batch.count, report);
+      for (int k = 0; k < 4; ++k) {
+        point.stress[k] = select(failed, given.stress[k], point.stress[k]);
+        inc.strain[k] = select(failed, zero, inc.strain[k]);
+      }
+      for (std::size_t k = 0; k < L::state.size(); ++k)
+        point.state[k] = select(failed, given.state[k], point.state[k]);
+      inc.density = select(failed, density_before, inc.density);
+      work = select(failed, zero, work);
+    }
     for (int k = 0; k < 4; ++k) point.stress[k].store_unaligned(batch.stress[index(k)] + i);
     for (std::size_t k = 0; k < L::state.size(); ++k)
       point.state[k].store_unaligned(batch.state[k] + i);
-    density.store_unaligned(batch.density + i);
+    inc.density.store_unaligned(batch.density + i);
+    if (batch.work != nullptr) work.store_unaligned(batch.work + i);
+    if (batch.modulus != nullptr)
+      L::modulus(P, point.stress, point.state, inc.density).store_unaligned(batch.modulus + i);
+    if (batch.viscosity != nullptr)
+      L::viscosity(P, point.stress, inc.density,
+                   T(batch.dt > 0.0 ? 1.0 / batch.dt : 0.0) * inc.strain)
+          .store_unaligned(batch.viscosity + i);
   }
 
-  static void note_failure(const Mask<Pack>& failed, std::size_t first, std::size_t count,
+  template <class T>
+  static void note_failure(const Mask<T>& failed, std::size_t first, std::size_t count,
                            UpdateReport& report) {
     if (!report.ok()) return;
-    std::array<double, pack_size> flag{};
-    xsimd::select(failed, Pack(1.0), Pack(0.0)).store_unaligned(flag.data());
-    for (std::size_t k = 0; k < pack_size && first + k < count; ++k) {
+    std::array<double, T::size> flag{};
+    select(failed, T(1.0), T(0.0)).store_unaligned(flag.data());
+    for (std::size_t k = 0; k < T::size && first + k < count; ++k) {
       if (flag[k] == 0.0) continue;
       report.failed = first + k;
       return;

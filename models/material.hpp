@@ -26,8 +26,8 @@ struct Batch {
   double* work = nullptr;  ///< out, optional: ½(σ_n + σ_{n+1}):Δε, energy per mean volume [J/m³]
 };
 
-/// Batches are processed in whole SIMD registers.
-constexpr std::size_t pack_size = Pack::size;
+/// Batches are processed in whole SIMD registers, at most two at a time.
+constexpr std::size_t pack_size = Twin::size;
 constexpr std::size_t padded(std::size_t count) {
   return (count + pack_size - 1) / pack_size * pack_size;
 }

@@ -27,6 +27,7 @@ struct ModifiedCamClay {
           ? "modified Cam-Clay with lines straight in ln v - ln p"
           : "modified Cam-Clay with lines straight in v - ln p (laboratory lambda and kappa)";
   static constexpr bool has_stress_memory = true;
+  static constexpr bool iterates = true;
 
   static constexpr std::array<ParamInfo, 10> parameters{{
       {"M", "M", "-", "slope q/p of the critical state line", Need::required, 0.0,

@@ -31,15 +31,15 @@ struct CamClayReturn {
     T x, g, h, f, D;    ///< as above; q = q_tr w/D
   };
 
-  Point at(const T& w) const {
+  [[gnu::always_inline]] Point at(const T& w) const {
     const T y = L * w;
     const T x = y + a * (L - y) + ln_ratio;
     return point(w, x, exp_pair(T(-x)), y, exp_pair(T(-y)));
   }
 
   /// The same where e^{−x} and e^{−y} are known.
-  Point point(const T& w, const T& x, const ExpPair<T>& e_x, const T& y,
-              const ExpPair<T>& e_y) const {
+  [[gnu::always_inline]] Point point(const T& w, const T& x, const ExpPair<T>& e_x, const T& y,
+                                     const ExpPair<T>& e_y) const {
     const T one(1.0);
     const T& g = e_x.whole;
     const T& h = e_y.whole;

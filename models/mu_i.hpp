@@ -110,6 +110,7 @@ struct MuIElastoviscoplastic {
   static constexpr std::string_view doc =
       "weakly compressible mu(I), elastic below yield: exact arrest, no regularisation";
   static constexpr bool has_stress_memory = true;
+  static constexpr bool iterates = false;
 
   static constexpr std::array<ParamInfo, 8> parameters{
       {mu_i::mu_0,
@@ -150,14 +151,15 @@ struct MuIElastoviscoplastic {
     // B² − 4H = (τ_tr − S_2 + α)² + 4α(S_2 − S_0)
     const T S_0 = P.mu_0 * p;
     const T S_2 = P.mu_d * p;
-    const T alpha = P.G * inc.dt * (P.I_0 / P.d) * root(T(p / P.rho_p));
+    const T alpha = P.G * inc.dt * (P.I_0 / P.d) * root(T(p * (T(1.0) / P.rho_p)));
     const T B = S_2 + tau_trial + alpha;
     const T H = S_2 * tau_trial + S_0 * alpha;
-    const T flowing =
-        T(2.0) * H /
-        (B + root(T(square(T(tau_trial - S_2 + alpha)) + T(4.0) * alpha * (S_2 - S_0))));
+    const T two_H_over_tau =
+        B + root(T(square(T(tau_trial - S_2 + alpha)) + T(4.0) * alpha * (S_2 - S_0)));
     const auto elastic = tau_trial <= S_0;
-    const T ratio = select(elastic, T(1.0), T(flowing / select(elastic, T(1.0), tau_trial)));
+    // τ/τ_tr = 2H/((B + √…) τ_tr)
+    const T ratio = select(elastic, T(1.0),
+                           T(T(2.0) * H / select(elastic, T(1.0), T(two_H_over_tau * tau_trial))));
     const Sym<T, N> next = ratio * s_trial - Sym<T, N>::isotropic(p);
     const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
@@ -248,6 +250,7 @@ struct MuIRegularised {
   static constexpr std::string_view doc =
       "weakly compressible mu(I) as a viscosity made finite by r: creeps, needs tiny steps";
   static constexpr bool has_stress_memory = false;
+  static constexpr bool iterates = false;
 
   static constexpr std::array<ParamInfo, 8> parameters{
       {mu_i::mu_0,
@@ -280,7 +283,7 @@ struct MuIRegularised {
     const T eta =
         P.mu_0 * loaded / sqrt(T(gamma_dot * gamma_dot + P.r * P.r)) +
         (P.mu_d - P.mu_0) * loaded * P.d / (P.I_0 * sqrt(T(loaded / P.rho_p)) + P.d * gamma_dot);
-    return select(p > T(0.0), eta, T(0.0 * p));
+    return select(p > T(0.0), eta, T(T(0.0) * p));
   }
 
   template <class T, int N>

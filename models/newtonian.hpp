@@ -18,6 +18,7 @@ struct Newtonian {
           ? "weakly compressible viscous fluid with a free surface (p >= 0)"
           : "weakly compressible viscous fluid that carries negative pressure";
   static constexpr bool has_stress_memory = false;
+  static constexpr bool iterates = false;
 
   static constexpr std::array<ParamInfo, 4> parameters{{
       {"eta", "η", "Pa s", "shear viscosity", Need::required, 0.0, not_negative, Scale::log},

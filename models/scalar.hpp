@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// The three scalar types a law is instantiated with, and the few operations they share:
+/// The scalar types a law is instantiated with, and the few operations they share:
 ///   double                   one material point (point driver, tests),
 ///   Pack                     one SIMD register of points (Material Point Method batches),
+///   Twin                     two registers of points (the same, where a law asks for it),
 ///   ceres::Jet<double, n>    a dual number (consistent tangents, parameter sensitivities).
 /// A law uses select() instead of an if, so that a Pack can take both branches lane by lane.
 
@@ -20,6 +21,47 @@ namespace repose {
 /// One SIMD register of doubles for the instruction set the library is compiled for.
 using Pack = xsimd::batch<double>;
 
+/// Two packs that go through a law together. A law that iterates is a chain of operations each of
+/// which waits for the one before; a second chain beside it fills the waiting.
+struct Twin {
+  static constexpr std::size_t size = 2 * Pack::size;
+  Pack a, b;
+
+  Twin() = default;
+  Twin(const Pack& first, const Pack& second) : a(first), b(second) {}
+  explicit Twin(double x) : a(x), b(x) {}
+  static Twin load_unaligned(const double* from) {
+    return {Pack::load_unaligned(from), Pack::load_unaligned(from + Pack::size)};
+  }
+  void store_unaligned(double* to) const {
+    a.store_unaligned(to);
+    b.store_unaligned(to + Pack::size);
+  }
+
+  /// What a comparison of two gives.
+  struct Mask {
+    Pack::batch_bool_type a, b;
+    friend Mask operator&&(const Mask& x, const Mask& y) { return {x.a && y.a, x.b && y.b}; }
+    friend Mask operator||(const Mask& x, const Mask& y) { return {x.a || y.a, x.b || y.b}; }
+    friend Mask operator!(const Mask& x) { return {!x.a, !x.b}; }
+  };
+
+  friend Twin operator+(const Twin& x, const Twin& y) { return {x.a + y.a, x.b + y.b}; }
+  friend Twin operator-(const Twin& x, const Twin& y) { return {x.a - y.a, x.b - y.b}; }
+  friend Twin operator*(const Twin& x, const Twin& y) { return {x.a * y.a, x.b * y.b}; }
+  friend Twin operator/(const Twin& x, const Twin& y) { return {x.a / y.a, x.b / y.b}; }
+  friend Twin operator-(const Twin& x) { return {-x.a, -x.b}; }
+  friend Mask operator<(const Twin& x, const Twin& y) { return {x.a < y.a, x.b < y.b}; }
+  friend Mask operator>(const Twin& x, const Twin& y) { return {x.a > y.a, x.b > y.b}; }
+  friend Mask operator<=(const Twin& x, const Twin& y) { return {x.a <= y.a, x.b <= y.b}; }
+  friend Mask operator>=(const Twin& x, const Twin& y) { return {x.a >= y.a, x.b >= y.b}; }
+  friend Mask operator==(const Twin& x, const Twin& y) { return {x.a == y.a, x.b == y.b}; }
+  friend Twin sqrt(const Twin& x) { return {xsimd::sqrt(x.a), xsimd::sqrt(x.b)}; }
+  friend Twin log(const Twin& x) { return {xsimd::log(x.a), xsimd::log(x.b)}; }
+  friend Twin exp(const Twin& x) { return {xsimd::exp(x.a), xsimd::exp(x.b)}; }
+  friend Twin expm1(const Twin& x) { return {xsimd::expm1(x.a), xsimd::expm1(x.b)}; }
+};
+
 /// A value with n first derivatives.
 template <int n>
 using Dual = ceres::Jet<double, n>;
@@ -36,6 +78,12 @@ struct ScalarTraits<Pack> {
   using Mask = Pack::batch_bool_type;
   static constexpr bool is_dual = false;
 };
+template <>
+struct ScalarTraits<Twin> {
+  using Value = Twin;
+  using Mask = Twin::Mask;
+  static constexpr bool is_dual = false;
+};
 template <int n>
 struct ScalarTraits<Dual<n>> {
   using Value = double;
@@ -50,6 +98,7 @@ using Mask = typename ScalarTraits<T>::Mask;
 
 inline double value(double x) { return x; }
 inline const Pack& value(const Pack& x) { return x; }
+inline const Twin& value(const Twin& x) { return x; }
 template <int n>
 double value(const Dual<n>& x) {
   return x.a;
@@ -60,6 +109,9 @@ inline double select(bool mask, double a, double b) { return mask ? a : b; }
 inline Pack select(const Mask<Pack>& mask, const Pack& a, const Pack& b) {
   return xsimd::select(mask, a, b);
 }
+inline Twin select(const Mask<Twin>& mask, const Twin& x, const Twin& y) {
+  return {xsimd::select(mask.a, x.a, y.a), xsimd::select(mask.b, x.b, y.b)};
+}
 template <int n>
 Dual<n> select(bool mask, const Dual<n>& a, const Dual<n>& b) {
   return mask ? a : b;
@@ -67,9 +119,11 @@ Dual<n> select(bool mask, const Dual<n>& a, const Dual<n>& b) {
 
 inline bool any(bool mask) { return mask; }
 inline bool any(const Mask<Pack>& mask) { return xsimd::any(mask); }
+inline bool any(const Mask<Twin>& mask) { return xsimd::any(mask.a || mask.b); }
 
 inline bool finite(double x) { return std::isfinite(x); }
 inline Mask<Pack> finite(const Pack& x) { return (x - x) == Pack(0.0); }
+inline Mask<Twin> finite(const Twin& x) { return {finite(x.a), finite(x.b)}; }
 template <int n>
 bool finite(const Dual<n>& x) {
   return std::isfinite(x.a);
@@ -97,6 +151,10 @@ inline Pack power_of_two(const Pack& shifted) {
                                    Bits(std::uint64_t{1023} << 52));
 }
 
+inline Twin power_of_two(const Twin& shifted) {
+  return {power_of_two(shifted.a), power_of_two(shifted.b)};
+}
+
 /// eˣ and eˣ − 1, each to its own relative accuracy (2 units in the last place): 1 + (eˣ − 1) would
 /// lose eˣ for x ≪ 0, eˣ − 1 by subtraction would lose itself near 0. ∞ above x = 709, 0 below
 /// −708.
@@ -108,7 +166,7 @@ struct ExpPair {
 /// Both at the price of one: x = k ln 2 + r, |r| <= ½ ln 2, and the Taylor series of e^r − 1 to r¹³
 /// (the next term is 1.3e-17 of the sum).
 template <class T>
-ExpPair<T> exp_pair(const T& x) {
+[[gnu::always_inline]] inline ExpPair<T> exp_pair(const T& x) {
   if constexpr (ScalarTraits<T>::is_dual) {
     const ExpPair<double> at = exp_pair(value(x));
     T whole(at.whole);

@@ -41,8 +41,8 @@ hid_t type_of<std::int64_t>() {
   return H5T_NATIVE_INT64;
 }
 
-template <class T>
-void write(hid_t file, const std::string& name, const std::vector<T>& values) {
+template <class T, class Allocator>
+void write(hid_t file, const std::string& name, const std::vector<T, Allocator>& values) {
   const hsize_t n = values.size();
   const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a data space");
   const Handle set(
@@ -52,11 +52,11 @@ void write(hid_t file, const std::string& name, const std::vector<T>& values) {
     throw std::runtime_error(fmt::format("HDF5 could not write {}", name));
 }
 
-template <class T>
-std::vector<T> read(hid_t file, const std::string& name) {
+template <class T, class Allocator = std::allocator<T>>
+std::vector<T, Allocator> read(hid_t file, const std::string& name) {
   const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, ("find " + name).c_str());
   const Handle space(H5Dget_space(set), H5Sclose, "read a data space");
-  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  std::vector<T, Allocator> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
   if (!values.empty() &&
       H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
@@ -175,7 +175,8 @@ void Simulation::load(const std::filesystem::path& path) {
       PointSet& points = s.bodies[b];
       points.id = read<std::int64_t>(file, fmt::format("body{}_id", b));
       for (std::size_t f = 0; f < points.fields; ++f) {
-        points.field[f] = read<double>(file, fmt::format("body{}_field{}", b, f));
+        points.field[f] = read<double, AlignedVector<double>::allocator_type>(
+            file, fmt::format("body{}_field{}", b, f));
         if (points.field[f].size() != points.id.size()) reject("its arrays differ in length");
       }
       points.count = 0;
@@ -195,6 +196,7 @@ void Simulation::load(const std::filesystem::path& path) {
             {static_cast<std::size_t>(row[2 + 2 * b]), static_cast<std::size_t>(row[3 + 2 * b])});
     }
     s.grid.restore(std::move(restored));
+    s.tiles_are_current = false;
   } catch (const IoError&) {
     throw;
   } catch (const std::exception& e) {

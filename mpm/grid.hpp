@@ -17,20 +17,23 @@
 namespace repose::mpm {
 
 constexpr int block_nx = 8;
-constexpr int block_ny = 4;
+constexpr int block_ny = 8;
 constexpr int block_nodes = block_nx * block_ny;
 
-/// A tile covers the nodes from `tile_margin` before the block's first node: one cell of drift and
-/// one node of stencil on this side, one cell and two (three with the idle lane) on the other.
-constexpr int tile_margin = 2;
-constexpr int tile_columns = block_nx + 5;
+/// A tile covers one cell of drift around its block and the stencils of points there: two nodes
+/// before the block's first, and one cell and two nodes (in x three, with the idle lane of the
+/// quadratic kernel) after its last. In x it begins two columns earlier, so that a tile row is
+/// 4 + 8 + 4 nodes: the last four of the block before, the block's own, the first four of the next.
+constexpr int tile_margin_x = 4;
+constexpr int tile_margin_y = 2;
+constexpr int tile_stride = 16;
 constexpr int tile_rows = block_ny + 5;
-constexpr int tile_stride = 16;  // room for the idle fourth lane of the quadratic kernel
 constexpr int tile_nodes = tile_stride * tile_rows;
+static_assert(tile_stride == tile_margin_x + block_nx + 4);
 
 /// What points hand to nodes.
 enum TileChannel : std::size_t { T_MASS, T_PX, T_PY, T_FX, T_FY, tile_channels };
-using Tile = std::array<std::array<double, tile_nodes>, tile_channels>;
+struct alignas(64) Tile : std::array<std::array<double, tile_nodes>, tile_channels> {};
 
 /// The points of one block, all bodies.
 struct PointBlock {
@@ -40,14 +43,14 @@ struct PointBlock {
 };
 
 /// The nodes of one block.
-struct NodeBlock {
-  int bx = 0, by = 0;
-  std::array<std::int32_t, 9> point_block{};  ///< the point blocks around; −1 where there is none
-  std::array<double, block_nodes> mass{};     ///< [kg/m]
+struct alignas(64) NodeBlock {
+  std::array<double, block_nodes> mass{};  ///< [kg/m]
   /// Mass with its mirror image beyond a wall, equal to mass away from walls [kg/m]
   std::array<double, block_nodes> mirrored_mass{};
   std::array<double, block_nodes> ux{}, uy{};  ///< velocity before forces (from the points) [m/s]
   std::array<double, block_nodes> vx{}, vy{};  ///< velocity after forces, then after walls [m/s]
+  int bx = 0, by = 0;
+  std::array<std::int32_t, 9> point_block{};  ///< the point blocks around; −1 where there is none
 };
 
 class Grid {

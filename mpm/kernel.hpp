@@ -1,36 +1,36 @@
 #pragma once
 /// \file
-/// B-spline interpolation functions on a grid whose nodes lie on the walls.
+/// B-spline interpolation functions on a grid whose nodes lie on the walls. Steffen, Kirby &
+/// Berzins (2008); the affine moment D of Jiang et al. (2015).
 ///
-/// SIMD along the stencil: the four lanes of a Row are the four nodes of one stencil row, so
-/// weights of one point in one direction are a single polynomial evaluated on four coefficient
-/// sets. Steffen, Kirby & Berzins (2008); the affine moment D of Jiang et al. (2015).
+/// A point at ξ (in units of h) has a stencil of four nodes per direction, of which the second is
+/// its anchor; with t = ξ − anchor, node k lies at the offset (k − 1) − t. Weights come in two
+/// shapes: of_point(t_x, t_y) gives those of one point, the lanes of a row being the nodes;
+/// weights(t) gives those of a whole Pack of points in one direction, one Pack per node.
 
+#include <array>
 #include <cmath>
 
-#include <xsimd/xsimd.hpp>
+#include "mpm/lanes.hpp"
 
 namespace repose::mpm {
-
-/// Four doubles: one row of a stencil.
-using Row = xsimd::make_sized_batch<double, 4>::type;
 
 /// Nodes in the widest stencil row; the quadratic kernel leaves the last with weight 0.
 constexpr int stencil_width = 4;
 
-/// Weights of one point in one direction: node k of the stencil has weight w[k] and lies at the
-/// offset d[k]·h from the point.
+/// Weights of one point: node k of a direction has weight w[k] and lies at the offset d[k]·h.
 struct Weights {
-  int base;  ///< index of the stencil's first node
-  Row w;
-  Row d;  ///< (x_k − x_p)/h
+  RowPair w;
+  RowPair d;  ///< (x_k − x_p)/h
 };
 
 namespace detail {
-inline Row polynomial(const Row& t, const Row& c0, const Row& c1, const Row& c2, const Row& c3) {
-  return xsimd::fma(t, xsimd::fma(t, xsimd::fma(t, c3, c2), c1), c0);
+/// Σ c_n tⁿ in every lane.
+inline RowPair polynomial(const RowPair& t, const RowPair& c0, const RowPair& c1, const RowPair& c2,
+                          const RowPair& c3) {
+  return fma(t, fma(t, fma(t, c3, c2), c1), c0);
 }
-inline Row offsets(const Row& t) { return Row({-1.0, 0.0, 1.0, 2.0}) - t; }
+inline RowPair offsets(const RowPair& t) { return RowPair(-1.0, 0.0, 1.0, 2.0) - t; }
 }  // namespace detail
 
 /// Cubic B-spline: nodes cell − 1 … cell + 2.
@@ -38,13 +38,31 @@ struct CubicKernel {
   static constexpr int rows = 4;
   static constexpr double inverse_moment = 3.0;  ///< Σ w d² = 1/3
 
-  static Weights at(double xi) {
-    const double cell = std::floor(xi);
-    const Row t(xi - cell);
+  /// The node at or below the point.
+  template <class T>
+  static T anchor(const T& xi) {
+    using std::floor;
+    return floor(xi);
+  }
+
+  template <class T>
+  static std::array<T, 4> weights(const T& t) {
+    const T sixth(1.0 / 6.0);
+    const T u = T(1.0) - t;
+    const T t2 = t * t;
+    const T u2 = u * u;
+    const T w0 = sixth * u2 * u;
+    const T w3 = sixth * t2 * t;
+    const T w1 = T(2.0 / 3.0) - t2 + T(3.0) * w3;
+    const T w2 = T(2.0 / 3.0) - u2 + T(3.0) * w0;
+    return {w0, w1, w2, w3};
+  }
+
+  static Weights of_point(double t_x, double t_y) {
+    const RowPair t(t_x, t_y);
     const double s = 1.0 / 6.0;
-    return {static_cast<int>(cell) - 1,
-            detail::polynomial(t, Row({s, 4 * s, s, 0.0}), Row({-3 * s, 0.0, 3 * s, 0.0}),
-                               Row({3 * s, -6 * s, 3 * s, 0.0}), Row({-s, 3 * s, -3 * s, s})),
+    return {detail::polynomial(t, {s, 4 * s, s, 0.0}, {-3 * s, 0.0, 3 * s, 0.0},
+                               {3 * s, -6 * s, 3 * s, 0.0}, {-s, 3 * s, -3 * s, s}),
             detail::offsets(t)};
   }
 };
@@ -54,12 +72,25 @@ struct QuadraticKernel {
   static constexpr int rows = 3;
   static constexpr double inverse_moment = 4.0;  ///< Σ w d² = 1/4
 
-  static Weights at(double xi) {
-    const double nearest = std::floor(xi + 0.5);
-    const Row t(xi - nearest);
-    return {static_cast<int>(nearest) - 1,
-            detail::polynomial(t, Row({0.125, 0.75, 0.125, 0.0}), Row({-0.5, 0.0, 0.5, 0.0}),
-                               Row({0.5, -1.0, 0.5, 0.0}), Row(0.0)),
+  /// The nearest node.
+  template <class T>
+  static T anchor(const T& xi) {
+    using std::floor;
+    return floor(xi + T(0.5));
+  }
+
+  template <class T>
+  static std::array<T, 4> weights(const T& t) {
+    const T half(0.5);
+    const T before = half - t;
+    const T behind = half + t;
+    return {half * before * before, T(0.75) - t * t, half * behind * behind, T(0.0)};
+  }
+
+  static Weights of_point(double t_x, double t_y) {
+    const RowPair t(t_x, t_y);
+    return {detail::polynomial(t, {0.125, 0.75, 0.125, 0.0}, {-0.5, 0.0, 0.5, 0.0},
+                               {0.5, -1.0, 0.5, 0.0}, {0.0, 0.0, 0.0, 0.0}),
             detail::offsets(t)};
   }
 };

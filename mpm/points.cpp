@@ -14,7 +14,7 @@ Batch PointSet::batch(const Range& range) {
 
 void rearrange(PointSet& points, const std::vector<std::uint32_t>& order,
                const std::vector<bool>& is_padding) {
-  std::vector<double> moved(order.size());
+  AlignedVector<double> moved(order.size());
   for (std::size_t f = 0; f < points.fields; ++f) {
     const double* from = points[f];
     for (std::size_t k = 0; k < order.size(); ++k) moved[k] = from[order[k]];

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/material.hpp"
+#include "mpm/lanes.hpp"
 
 namespace repose::mpm {
 
@@ -33,8 +34,8 @@ constexpr std::size_t max_state = 4;
 constexpr std::size_t affine_fields = 4;
 
 /// A contiguous run of slots: the points of one body in one block. `begin` is a multiple of the
-/// pack size; the slots between count and padded(count) hold copies of the last point, never
-/// transferred.
+/// pack size; the slots between count and padded(count) hold copies of the last point, valid but
+/// never transferred.
 struct Range {
   std::size_t begin = 0;
   std::size_t count = 0;
@@ -48,7 +49,7 @@ struct PointSet {
   /// First of the four fields (xx, xy, yx, yy) of the affine velocity that goes to the grid: LXX,
   /// or one behind the state where it is kept apart from the velocity gradient.
   std::size_t affine = LXX;
-  std::array<std::vector<double>, STATE + max_state + affine_fields> field;
+  std::array<AlignedVector<double>, STATE + max_state + affine_fields> field;
   std::vector<std::int64_t> id;  ///< order of creation, the point's name for life; −1 in padding
 
   double* operator[](std::size_t f) { return field[f].data(); }

@@ -24,7 +24,7 @@ class Simulation::Impl {
   double choose_step(double stop_at) const;
   void points_to_grid();           ///< P2G: mass, momentum, internal force of every block's tile
   void update_grid(double dt);     ///< sum tiles, accelerate nodes
-  void grid_to_points(double dt);  ///< G2P, move, update stress; throws NumericalFailure
+  void grid_to_points(double dt);  ///< G2P, move, update stress, P2G of the next step
   void close_ledger();             ///< kinetic energies before and after; throws NumericalFailure
 
   SeriesRow diagnostics();
@@ -51,6 +51,7 @@ class Simulation::Impl {
   double dt_min = HUGE_VAL, dt_max = 0.0;
   double drift = 0.0;  ///< bound on the way any point has gone since the last sort [m]
   bool must_sort = true;
+  bool tiles_are_current = false;  ///< the tiles hold the points as they are
   std::int64_t sorts = 0;
   std::int64_t wall_corrections = 0;
   double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
@@ -73,13 +74,19 @@ class Simulation::Impl {
   };
   template <class Kernel, bool affine>
   void transfer_to_tile(std::size_t block);
-  template <class Kernel, bool keeps>
-  void advance_block(std::size_t block, double dt, BlockSums& sums);
-  /// Adds a range's energies, work, power and signals after its update.
-  void sum_up(const PointSet& points, const Range& range, const Batch& batch, const Motion& motion,
-              bool viscous, BlockSums& sums) const;
+  template <class Kernel, Keeps keeps>
+  void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
   void move(PointSet& points, const Range& range, const Motion& motion, double dt,
             BlockSums& sums) const;
+  /// Brings a range's stress to the end of the step; `scratch` has room for scratch_arrays arrays.
+  static constexpr std::size_t scratch_arrays = 10;
+  void strain(PointSet& points, std::size_t body, const Range& range, const Motion& motion,
+              double dt, double* scratch, BlockSums& sums) const;
+  /// Adds a range's energies, work, power and signals after its update.
+  void sum_up(const PointSet& points, const Range& range, const Batch& batch, const Motion& motion,
+              BlockSums& sums) const;
+  /// How far a point may be from the cell it was sorted into [m].
+  double reach() const { return 0.98 * grid.h(); }
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
   void remove_outflow();

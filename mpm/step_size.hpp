@@ -13,10 +13,12 @@ struct Signals {
   double signal = 0.0;        ///< max (c + |v|) [m/s]
   double viscous_rate = 0.0;  ///< max 4η/(ρh²) [1/s]; its inverse bounds an explicit viscosity
 
+  /// A NaN stays one.
   void include(const Signals& other) {
-    speed = std::max(speed, other.speed);
-    signal = std::max(signal, other.signal);
-    viscous_rate = std::max(viscous_rate, other.viscous_rate);
+    const auto larger = [](double x, double y) { return y <= x ? x : y; };
+    speed = larger(speed, other.speed);
+    signal = larger(signal, other.signal);
+    viscous_rate = larger(viscous_rate, other.viscous_rate);
   }
 };
 

@@ -3,9 +3,13 @@
 /// The two transfers of the affine particle-in-cell method (APIC, Jiang et al. 2015) with the
 /// affine field as velocity gradient and its adjoint as force (moving least squares MPM, Hu et al.
 /// 2018):
-///   m_i = Σ w m_p,   p_i = Σ w m_p (v_p + L_p (x_i − x_p)),
+///   m_i = Σ w m_p,   p_i = Σ w m_p (v_p + A_p (x_i − x_p)),
 ///   f_i = −Σ w V_p D⁻¹ σ_p (x_i − x_p),                      D = h²/4 (quadratic), h²/3 (cubic)
 ///   v_p = Σ w v_i,   L_p = Σ w v_i (x_i − x_p)ᵀ D⁻¹.
+///
+/// To the grid, the lanes of a register are the nodes of a stencil and a point's contributions stay
+/// in registers as long as the next point has the same stencil. From the grid, the lanes are
+/// points, each of which looks its nodes up in registers that hold a row of the tile.
 
 #include "mpm/grid.hpp"
 #include "mpm/kernel.hpp"
@@ -21,6 +25,9 @@ struct Retention {
   double gradient = 0.0;  ///< keep, of the affine velocity
 };
 
+/// Which of the two a point keeps at all: without, u need not be interpolated.
+enum class Keeps : std::uint8_t { nothing, velocity, velocity_and_gradient };
+
 /// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.
 template <class Kernel, bool affine>
@@ -29,7 +36,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
 
 /// Velocity at the nodes of a tile, before (u) and after (v) forces.
 struct VelocityTile {
-  std::array<double, tile_nodes> vx, vy, ux, uy;
+  alignas(64) std::array<double, tile_nodes> vx, vy, ux, uy;
 };
 
 /// The velocity Σ w v_i that moves a range's points, from its first one on.
@@ -38,9 +45,9 @@ struct Motion {
 };
 
 /// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY, the
-/// affine velocity) and gives the velocity that moves them. Without `keeps`, both retentions are 0
-/// and ux, uy are not read.
-template <class Kernel, bool keeps>
+/// affine velocity) and gives the velocity that moves them, with the padding of the range treated
+/// like points. Where nothing is kept, ux and uy are not read.
+template <class Kernel, Keeps keeps>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
                     const Range& range, const Retention& keep, PointSet& points, Motion motion);
 

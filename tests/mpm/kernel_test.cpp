@@ -17,6 +17,18 @@ std::array<double, 4> values(const Row& row) {
   return x;
 }
 
+/// Weights and offsets of a point in one direction, with the index of the stencil's first node.
+struct Stencil {
+  int base;
+  std::array<double, 4> w, d;
+};
+template <class K>
+Stencil stencil_at(double xi) {
+  const double anchor = K::anchor(xi);
+  const Weights at = K::of_point(xi - anchor, 0.0);
+  return {static_cast<int>(anchor) - 1, values(at.w.x()), values(at.d.x())};
+}
+
 /// The B-splines written as their textbooks do, in the distance from the node.
 double spline(CubicKernel, double d) {
   const double r = std::abs(d);
@@ -49,10 +61,9 @@ TYPED_TEST_SUITE(KernelTest, Kernels);
 
 TYPED_TEST(KernelTest, IsTheBSpline) {
   for (const double xi : this->positions()) {
-    const Weights at = TypeParam::at(xi);
-    const auto w = values(at.w);
+    const auto [base, w, offset] = stencil_at<TypeParam>(xi);
     for (int k = 0; k < stencil_width; ++k) {
-      const double d = at.base + k - xi;
+      const double d = base + k - xi;
       const double expected = k < TypeParam::rows ? spline(TypeParam{}, d) : 0.0;
       // four products of size <= 1 and the rounding of ξ − cell: 8 eps
       EXPECT_NEAR(w[static_cast<std::size_t>(k)], expected, 8 * eps) << "xi = " << xi;
@@ -62,9 +73,7 @@ TYPED_TEST(KernelTest, IsTheBSpline) {
 
 TYPED_TEST(KernelTest, MomentsOfOrderZeroToTwo) {
   for (const double xi : this->positions()) {
-    const Weights at = TypeParam::at(xi);
-    const auto w = values(at.w);
-    const auto d = values(at.d);
+    const auto [base, w, d] = stencil_at<TypeParam>(xi);
     double unity = 0.0, first = 0.0, second = 0.0;
     for (std::size_t k = 0; k < TypeParam::rows; ++k) {
       unity += w[k];
@@ -81,7 +90,7 @@ TYPED_TEST(KernelTest, MomentsOfOrderZeroToTwo) {
 
 TYPED_TEST(KernelTest, PositiveAndTheIdleLaneIsZero) {
   for (const double xi : this->positions()) {
-    const auto w = values(TypeParam::at(xi).w);
+    const auto w = stencil_at<TypeParam>(xi).w;
     // at the end of its support a weight is a sum of terms <= 1 that cancel: ± 2 eps
     for (std::size_t k = 0; k < 4; ++k) EXPECT_GE(w[k], -2 * eps) << "xi = " << xi;
     if (TypeParam::rows == 3) {
@@ -93,9 +102,41 @@ TYPED_TEST(KernelTest, PositiveAndTheIdleLaneIsZero) {
 TYPED_TEST(KernelTest, StencilHoldsTheWholeSupport) {
   // (rows + 1)/2 nodes to either side at most: what the tile's margins are made for
   for (const double xi : this->positions()) {
-    const int base = TypeParam::at(xi).base;
+    const int base = stencil_at<TypeParam>(xi).base;
     EXPECT_LE(base, xi - 0.5 * (TypeParam::rows - 2) + eps * 200);
     EXPECT_GE(base, xi - 0.5 * TypeParam::rows - eps * 200);
+  }
+}
+
+// The rows of x and y, their repetition and spreading over a register, and the weights of whole
+// packs of points are the same weights.
+TYPED_TEST(KernelTest, EveryShapeHoldsTheSameWeights) {
+  const auto positions = this->positions();
+  for (std::size_t n = 0; n + Pack::size <= positions.size(); n += Pack::size) {
+    const Pack xi = Pack::load_unaligned(positions.data() + n);
+    const Pack anchor = TypeParam::anchor(xi);
+    const auto packs = TypeParam::weights(Pack(xi - anchor));
+    for (std::size_t lane = 0; lane < Pack::size; ++lane) {
+      const Stencil x = stencil_at<TypeParam>(positions[n + lane]);
+      for (std::size_t k = 0; k < 4; ++k) {
+        alignas(64) double w[Pack::size];
+        packs[k].store_aligned(w);
+        // two polynomials of the same value, terms of size <= 1: 8 eps each
+        EXPECT_NEAR(w[lane], x.w[k], 16 * eps);
+      }
+      const double t = positions[n] - TypeParam::anchor(positions[n]);
+      const double t_lane = positions[n + lane] - TypeParam::anchor(positions[n + lane]);
+      const Weights both = TypeParam::of_point(t, t_lane);
+      EXPECT_EQ(values(both.w.y()), x.w);
+      EXPECT_EQ(values(both.d.y()), x.d);
+      alignas(64) double repeated[Pack::size], spread[Pack::size];
+      both.w.x_repeated().store_aligned(repeated);
+      both.w.template y_spread<2>().store_aligned(spread);
+      for (std::size_t k = 0; k < Pack::size; ++k) {
+        EXPECT_EQ(repeated[k], values(both.w.x())[k % 4]);
+        EXPECT_EQ(spread[k], x.w[2 + k / 4]);
+      }
+    }
   }
 }
 

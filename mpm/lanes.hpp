@@ -1,0 +1,149 @@
+#pragma once
+/// \file
+/// What the transfers do with SIMD registers beyond arithmetic: stencil rows side by side, and a
+/// row of a tile as a table that lanes look their nodes up in.
+
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include <xsimd/xsimd.hpp>
+
+#include "models/scalar.hpp"
+
+namespace repose::mpm {
+
+/// Four doubles: one row of a stencil.
+using Row = xsimd::make_sized_batch<double, 4>::type;
+
+/// Stencil rows that fit side by side in one register.
+constexpr std::size_t rows_per_pack = Pack::size / Row::size;
+
+/// Memory that starts on a cache line, so that no register straddles two.
+template <class T>
+using AlignedVector = std::vector<T, xsimd::aligned_allocator<T, 64>>;
+
+/// Whole numbers below 2^32 held as doubles, to be stored where whole_number() reads them: adding
+/// 2^52 leaves them in the lowest bits.
+inline Pack as_bits(const Pack& whole) { return whole + Pack(0x1p52); }
+inline std::uint32_t whole_number(double bits) {
+  return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(bits));
+}
+
+#if defined(__AVX512F__)
+static_assert(rows_per_pack == 2);
+
+/// A row of x and a row of y that go through the same operations: the two halves of a register.
+class RowPair {
+ public:
+  explicit RowPair(const Pack& both) : both_(both) {}
+  RowPair(double x, double y) : both_(_mm512_mask_blend_pd(0xF0, Pack(x), Pack(y))) {}
+  RowPair(double c0, double c1, double c2, double c3) : both_({c0, c1, c2, c3, c0, c1, c2, c3}) {}
+  friend RowPair operator-(const RowPair& a, const RowPair& b) {
+    return RowPair(Pack(a.both_ - b.both_));
+  }
+  friend RowPair fma(const RowPair& a, const RowPair& b, const RowPair& c) {
+    return RowPair(xsimd::fma(a.both_, b.both_, c.both_));
+  }
+  Row x() const { return half<0>(); }
+  Row y() const { return half<1>(); }
+
+  /// The row of x as often as there are rows in a register.
+  Pack x_repeated() const {
+    return Pack(__builtin_shufflevector(both_.data, both_.data, 0, 1, 2, 3, 0, 1, 2, 3));
+  }
+  /// Lane j of the row of y all over the first half, lane j + 1 all over the second.
+  template <int j>
+  Pack y_spread() const {
+    constexpr int a = 4 + j;
+    constexpr int b = 5 + j;
+    return Pack(__builtin_shufflevector(both_.data, both_.data, a, a, a, a, b, b, b, b));
+  }
+
+ private:
+  template <int k>
+  Row half() const {
+    return Row(
+        __builtin_shufflevector(both_.data, both_.data, 4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3));
+  }
+  Pack both_;
+};
+
+/// Row k of the register.
+template <int k>
+Row row_of(const Pack& p) {
+  return Row(__builtin_shufflevector(p.data, p.data, 4 * k, 4 * k + 1, 4 * k + 2, 4 * k + 3));
+}
+
+/// A row of 16 numbers, held in registers; each lane looks up its own.
+class RowTable {
+ public:
+  using Index = __m512i;
+  explicit RowTable(const double* row)
+      : low_(_mm512_load_pd(row)),
+        high_(_mm512_load_pd(row + 8)) {}
+  Pack at(Index index) const { return Pack(_mm512_permutex2var_pd(low_, index, high_)); }
+
+  /// From whole numbers 0 … 15 held as doubles; only the lowest bits count.
+  static Index index(const Pack& column) { return _mm512_castpd_si512(as_bits(column)); }
+
+ private:
+  __m512d low_, high_;
+};
+#else
+static_assert(rows_per_pack == 1);
+
+class RowPair {
+ public:
+  RowPair(const Row& x, const Row& y) : x_(x), y_(y) {}
+  RowPair(double x, double y) : x_(x), y_(y) {}
+  RowPair(double c0, double c1, double c2, double c3) : x_({c0, c1, c2, c3}), y_(x_) {}
+  friend RowPair operator-(const RowPair& a, const RowPair& b) {
+    return {Row(a.x_ - b.x_), Row(a.y_ - b.y_)};
+  }
+  friend RowPair fma(const RowPair& a, const RowPair& b, const RowPair& c) {
+    return {xsimd::fma(a.x_, b.x_, c.x_), xsimd::fma(a.y_, b.y_, c.y_)};
+  }
+  Row x() const { return x_; }
+  Row y() const { return y_; }
+  Pack x_repeated() const { return Pack(x_.data); }
+  template <int j>
+  Pack y_spread() const {
+    return Pack(__builtin_shufflevector(y_.data, y_.data, j, j, j, j));
+  }
+
+ private:
+  Row x_, y_;
+};
+template <int k>
+Row row_of(const Pack& p) {
+  static_assert(k == 0);
+  return Row(p.data);
+}
+
+class RowTable {
+ public:
+  using Index = __m256i;
+  explicit RowTable(const double* row) : row_(row) {}
+  Pack at(Index index) const { return Pack(_mm256_i64gather_pd(row_, index, sizeof(double))); }
+
+  static Index index(const Pack& column) {
+    return _mm256_and_si256(_mm256_castpd_si256(as_bits(column)), _mm256_set1_epi64x(15));
+  }
+
+ private:
+  const double* row_;
+};
+#endif
+
+/// The smallest and the largest lane.
+inline double least(const Pack& x) {
+  alignas(Pack) double lane[Pack::size];
+  x.store_aligned(lane);
+  double found = lane[0];
+  for (std::size_t k = 1; k < Pack::size; ++k) found = lane[k] < found ? lane[k] : found;
+  return found;
+}
+inline double greatest(const Pack& x) { return -least(-x); }
+
+}  // namespace repose::mpm
