@@ -20,13 +20,14 @@ Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick);
 
 /// One run of a sweep and, once it is there, its result. Figures keep the names of summary.json.
 struct SweepRun {
-  SceneFile file;  ///< named after what is varied, with 60 rows of series
-  nlohmann::json summary;
+  SceneFile file;          ///< named after what is varied, with 60 rows of series
+  nlohmann::json summary;  ///< null: no result yet
   std::map<std::string, std::vector<double>, std::less<>> series;  ///< columns of series.csv
   std::vector<double> x_m, depth_m;                                ///< profile.csv
 
   const mpm::Scene& scene() const { return file.scene; }
-  std::string status() const { return summary.value("status", ""); }
+  /// "" as long as there is no result.
+  std::string status() const { return summary.is_object() ? summary.value("status", "") : ""; }
   bool done() const { return status() == "done"; }
   /// A number of summary.json; NaN where there is none.
   double figure(std::string_view key) const;

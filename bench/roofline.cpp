@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <stdexcept>
 
 #include <benchmark/benchmark.h>
@@ -71,12 +72,6 @@ double measured_triad(double bytes) {
   return 24.0 * static_cast<double>(n) * repeats / seconds;
 }
 
-double cache_bytes(int level) {
-  for (const benchmark::CPUInfo::CacheInfo& cache : benchmark::CPUInfo::Get().caches)
-    if (cache.level == level && cache.type != "Instruction") return cache.size;
-  return 0.0;
-}
-
 }  // namespace
 
 std::vector<std::size_t> register_widths() {
@@ -99,24 +94,12 @@ double peak_flops() {
   return best;
 }
 
-const std::vector<MemoryLevel>& memory_levels() {
-  static const std::vector<MemoryLevel> levels = [] {
-    std::vector<MemoryLevel> list;
-    const double L2 = cache_bytes(2), L3 = cache_bytes(3);
-    if (L2 > 0.0) list.push_back({"L2", L2, 0.5 * L2, 0.0});
-    if (L3 > 2.0 * L2) list.push_back({"L3", L3, std::min(0.5 * L3, 4.0 * L2), 0.0});
-    // four times the last cache, as STREAM asks for, as far as memory is not wasted on it
-    list.push_back({"DRAM", HUGE_VAL, std::clamp(4.0 * std::max(L2, L3), 96e6, 768e6), 0.0});
-    for (MemoryLevel& level : list) level.bytes_per_second = measured_triad(level.triad_bytes);
-    return list;
-  }();
-  return levels;
-}
-
-const MemoryLevel& level_of(double bytes) {
-  for (const MemoryLevel& level : memory_levels())
-    if (bytes <= level.holds) return level;
-  return memory_levels().back();
+double triad_bandwidth(double bytes) {
+  static std::map<int, double> measured;  // by the power of two
+  const int power = std::clamp(static_cast<int>(std::lround(std::log2(bytes))), 18, 29);
+  const auto found = measured.find(power);
+  if (found != measured.end()) return found->second;
+  return measured[power] = measured_triad(std::ldexp(1.0, power));
 }
 
 }  // namespace repose::bench

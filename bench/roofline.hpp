@@ -16,15 +16,9 @@ std::vector<std::size_t> register_widths();
 /// The best of them.
 double peak_flops();
 
-struct MemoryLevel {
-  const char* name;         ///< "L2", "L3", "DRAM"
-  double holds;             ///< bytes that a working set may have to stay in it
-  double triad_bytes;       ///< size of the three arrays that are measured
-  double bytes_per_second;  ///< of a = b + s c: two loads and a store, without write allocation
-};
-/// Smallest first; measured at the first call (a second or so).
-const std::vector<MemoryLevel>& memory_levels();
-/// The level in which a working set of that many bytes lies.
-const MemoryLevel& level_of(double bytes);
+/// Bytes per second of a = b + s c over three arrays of that many bytes together: two loads and a
+/// store, without write allocation. Sizes are rounded to a power of two from 256 KiB to 512 MiB,
+/// and each is measured once: what a working set of that size can have, whatever cache it lies in.
+double triad_bandwidth(double bytes);
 
 }  // namespace repose::bench

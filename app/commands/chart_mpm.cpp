@@ -140,6 +140,7 @@ class MpmChart {
   std::vector<std::string> warnings() const {
     std::vector<std::string> list = scene_.notes;
     for (const SweepRun& run : runs_) {
+      if (run.status().empty()) continue;
       for (const auto& warning : run.summary.value("warnings", nlohmann::json::array()))
         list.push_back(fmt::format("{}: {}", run.scene().name, warning.get<std::string>()));
       if (run.status() == "failed")
