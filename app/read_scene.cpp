@@ -108,8 +108,9 @@ void read_grid(TomlReader table, mpm::Scene& scene) {
   scene.h = table.number({"h", "m", "cell size", positive, {}});
   scene.points_per_cell = static_cast<int>(table.integer(
       "points_per_cell", "a square number: 1, 4, 9, 16", 1, 100, scene.points_per_cell));
-  scene.kernel = table.choice("kernel", {"quadratic", "cubic"}, 1) == 0 ? mpm::Kernel::quadratic
-                                                                        : mpm::Kernel::cubic;
+  scene.kernel = static_cast<mpm::Kernel>(
+      table.choice("kernel", {mpm::kernel_names.begin(), mpm::kernel_names.end()},
+                   static_cast<std::size_t>(scene.kernel)));
 }
 
 void read_step(TomlReader table, mpm::Scene& scene) {
@@ -154,6 +155,7 @@ SceneFile read_scene(InputFile& file) {
   SceneFile result;
   mpm::Scene& scene = result.scene;
   TomlReader root(file);
+  root.expect("chart");  // read_chart.hpp
   read_general(root.table("scene"), scene);
   read_domain(root.table("domain"), scene);
   for (const TomlReader& table : root.tables("body", "a block of material"))

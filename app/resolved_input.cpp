@@ -139,10 +139,9 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
   }
   out += "\n[grid]\n" + line("h", number(scene.h), "m") +
          line("points_per_cell", std::to_string(scene.points_per_cell)) +
-         line("kernel", toml_string(scene.kernel == mpm::Kernel::cubic ? "cubic" : "quadratic"));
+         line("kernel", toml_string(mpm::name_of(scene.kernel)));
   out +=
-      "\n[step]\n" +
-      line("transfer", toml_string(mpm::transfer_names[static_cast<std::size_t>(scene.transfer)])) +
+      "\n[step]\n" + line("transfer", toml_string(mpm::name_of(scene.transfer))) +
       (scene.transfer == mpm::Transfer::relaxed
            ? line("relaxation_time",
                   number(scene.relaxation_time.value_or(mpm::default_relaxation_time(scene))), "s")

@@ -39,6 +39,11 @@ struct Body {
 };
 
 enum class Kernel { quadratic, cubic };
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 2> kernel_names{"quadratic", "cubic"};
+constexpr std::string_view name_of(Kernel kernel) {
+  return kernel_names[static_cast<std::size_t>(kernel)];
+}
 
 /// How velocities travel between points and grid; transfer.hpp has the formulas.
 enum class Transfer {
@@ -51,6 +56,9 @@ enum class Transfer {
 };
 /// Their names in scene files, in the same order.
 constexpr std::array<std::string_view, 5> transfer_names{"pic", "flip", "apic", "aflip", "relaxed"};
+constexpr std::string_view name_of(Transfer transfer) {
+  return transfer_names[static_cast<std::size_t>(transfer)];
+}
 
 struct Scene {
   std::string name;

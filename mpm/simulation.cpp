@@ -178,6 +178,9 @@ SeriesRow Simulation::Impl::diagnostics() {
   row.density_min = HUGE_VAL;
   row.density_max = 0.0;
   row.front_max_m = 0.0;
+  // Σ m (x × v) + m D (A_yx − A_xy): what the grid receives; Jiang et al. (2015), APIC
+  const double moment =
+      retention(0.0).affine ? scene.h * scene.h / (scene.kernel == Kernel::cubic ? 3.0 : 4.0) : 0.0;
   for (const PointSet& points : bodies)
     for (std::size_t s = 0; s < points.slots(); ++s) {
       if (points.id[s] < 0) continue;
@@ -185,6 +188,9 @@ SeriesRow Simulation::Impl::diagnostics() {
       row.mass_kg_per_m += m;
       row.momentum_x += m * points[VX][s];
       row.momentum_y += m * points[VY][s];
+      row.angular_momentum +=
+          m * (points[X][s] * points[VY][s] - points[Y][s] * points[VX][s] +
+               moment * (points[points.affine + 2][s] - points[points.affine + 1][s]));
       row.density_min = std::min(row.density_min, points[RHO][s]);
       row.density_max = std::max(row.density_max, points[RHO][s]);
       row.front_max_m = std::max(row.front_max_m, points[X][s]);

@@ -24,8 +24,9 @@ struct SeriesRow {
   double wall_loss_J_per_m;        ///< taken by the walls: impact and friction
   double energy_residual_J_per_m;  ///< what the ledger does not account for (time integration)
   double mass_kg_per_m;
-  double outflow_kg_per_m;          ///< mass that has left through open edges
-  double momentum_x, momentum_y;    ///< [kg m/s per m]
+  double outflow_kg_per_m;        ///< mass that has left through open edges
+  double momentum_x, momentum_y;  ///< [kg m/s per m]
+  double angular_momentum;  ///< about the origin, the affine velocity included [kg m²/s per m]
   double density_min, density_max;  ///< [kg/m³]
   std::int64_t points_separated;    ///< points that carry no stress
 };
@@ -101,6 +102,7 @@ class Simulation {
   void load(const std::filesystem::path& file);
 
  private:
+  friend class MidCollapse;  ///< bench/: starts from points that another resolution has moved
   class Impl;
   std::unique_ptr<Impl> impl_;
 };
