@@ -93,6 +93,15 @@ class LawMaterial final : public Material {
     }
   }
 
+  void strain_to_pressure(const Batch& batch, double* pressure_to_strain) const override {
+    for (std::size_t i = 0; i < batch.count; i += pack_size) {
+      const Point point = load_point(batch, i);
+      L::strain_to_pressure(packed_, point.stress, point.state, load(batch.density + i),
+                            load(pressure_to_strain + i))
+          .store_unaligned(pressure_to_strain + i);
+    }
+  }
+
   InitialPoint initial(const InitialConditions& given) const override {
     return L::initial(plain_, given);
   }

@@ -64,6 +64,14 @@ T compression_energy(const P& par, const T& density) {
   return select(r < T(1.0), T(0.0), T(par.K * (r * log(r) - r + T(1.0))));
 }
 
+/// tr Δε = ln(ρ/ρ*) with MUI-1 for both; from p = 0 as if grains touched (ρ = ρ0), for nothing
+/// brings a loose point to a pressure before it does.
+template <class P, class T>
+T strain_to_pressure(const P& par, const T& p, const T& p_new) {
+  using std::log;
+  return log((par.K + p) / (par.K + floor_at(p_new, 0.0)));
+}
+
 template <class P>
 double density_at(const P& par, double p) {
   return par.rho_0 * (1.0 + p / par.K);
@@ -214,6 +222,12 @@ struct MuIElastoviscoplastic {
     return mu_i::compression_energy(P, density) + contract(s, s) / (T(4.0) * P.G);
   }
 
+  template <class T, int N>
+  static T strain_to_pressure(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                              const T&, const T& p_new) {
+    return mu_i::strain_to_pressure(P, pressure(stress), p_new);
+  }
+
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {
     return mu_i::density_at(P, p);
   }
@@ -323,6 +337,12 @@ struct MuIRegularised {
   template <class T, int N>
   static T stored_energy(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density) {
     return mu_i::compression_energy(P, density);
+  }
+
+  template <class T, int N>
+  static T strain_to_pressure(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                              const T&, const T& p_new) {
+    return mu_i::strain_to_pressure(P, pressure(stress), p_new);
   }
 
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {

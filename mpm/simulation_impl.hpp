@@ -71,15 +71,17 @@ class Simulation::Impl {
     bool outflow = false;
     std::string failure;
   };
-  template <class Kernel, bool affine>
+  template <class Kernel, bool affine, bool averages>
   void transfer_to_tile(std::size_t block);
-  template <class Kernel, bool keeps>
+  template <class Kernel, bool keeps, bool averages>
   void advance_block(std::size_t block, double dt, BlockSums& sums);
   /// Adds a range's energies, work, power and signals after its update.
   void sum_up(const PointSet& points, const Range& range, const Batch& batch, const Motion& motion,
               bool viscous, BlockSums& sums) const;
   void move(PointSet& points, const Range& range, const Motion& motion, double dt,
             BlockSums& sums) const;
+  bool averages() const { return scene.pressure_averaging > 0.0; }
+  std::size_t channels() const { return averages() ? tile_channels : T_PRESSURE; }
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
   void remove_outflow();

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "mpm/pressure_averaging.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/transfer.hpp"
 
@@ -33,6 +34,21 @@ struct Overlap {
         end(std::min(block_size, offset * block_size + block_size + 5 - tile_margin)),
         shift(tile_margin - offset * block_size) {}
 };
+
+/// Calls f.operator()<Kernel, a, b>() for choices made at run time.
+template <class F>
+void choose(Kernel kernel, bool a, bool b, F&& f) {
+  const auto with = [&]<class K>() {
+    if (a)
+      b ? f.template operator()<K, true, true>() : f.template operator()<K, true, false>();
+    else
+      b ? f.template operator()<K, false, true>() : f.template operator()<K, false, false>();
+  };
+  if (kernel == Kernel::cubic)
+    with.template operator()<CubicKernel>();
+  else
+    with.template operator()<QuadraticKernel>();
+}
 
 /// What sum_up() collects, for one point or a pack of them.
 template <class T>
@@ -119,23 +135,21 @@ Retention Simulation::Impl::retention(double dt) const {
   return {true, keep, keep};
 }
 
-template <class Kernel, bool affine>
+template <class Kernel, bool affine, bool averages>
 void Simulation::Impl::transfer_to_tile(std::size_t block) {
   const PointBlock& pb = grid.point_blocks[block];
   Tile& tile = grid.tiles[block];
-  for (auto& channel : tile) channel.fill(0.0);
+  for (std::size_t c = 0; c < channels(); ++c) tile[c].fill(0.0);
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    points_to_tile<Kernel, affine>(bodies[b], pb.range[b], grid.h(), tile_origin(pb), tile);
+    points_to_tile<Kernel, affine, averages>(bodies[b], pb.range[b], grid.h(), tile_origin(pb),
+                                             gravity, tile);
 }
 
 void Simulation::Impl::points_to_grid() {
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    const bool affine = retention(0.0).affine;
-    if (scene.kernel == Kernel::cubic)
-      affine ? transfer_to_tile<CubicKernel, true>(k) : transfer_to_tile<CubicKernel, false>(k);
-    else
-      affine ? transfer_to_tile<QuadraticKernel, true>(k)
-             : transfer_to_tile<QuadraticKernel, false>(k);
+    choose(scene.kernel, retention(0.0).affine, averages(), [&]<class K, bool A, bool B>() {
+      transfer_to_tile<K, A, B>(k);
+    });
   });
 }
 
@@ -152,7 +166,7 @@ void Simulation::Impl::update_grid(double dt) {
         const Tile& tile = grid.tiles[static_cast<std::size_t>(source)];
         const Overlap ox(dx, block_nx);
         const Overlap oy(dy, block_ny);
-        for (std::size_t c = 0; c < tile_channels; ++c)
+        for (std::size_t c = 0; c < channels(); ++c)
           for (int j = oy.begin; j < oy.end; ++j) {
             const double* from = tile[c].data() + (j + oy.shift) * tile_stride + ox.shift;
             double* to = sum[c].data() + j * block_nx;
@@ -174,6 +188,7 @@ void Simulation::Impl::update_grid(double dt) {
       nb.uy[n] = uy;
       nb.vx[n] = wx;
       nb.vy[n] = wy;
+      if (averages()) nb.pressure[n] = sum[T_PRESSURE][n] * inv_m;
       sums.before += 0.5 * m * (ux * ux + uy * uy);
       sums.after += 0.5 * m * (wx * wx + wy * wy);
       sums.impulse_work += m * ((wx - ux) * ux + (wy - uy) * uy);
@@ -185,17 +200,13 @@ void Simulation::Impl::update_grid(double dt) {
 void Simulation::Impl::grid_to_points(double dt) {
   block_sums_.assign(grid.point_blocks.size(), BlockSums{});
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    const bool keeps = retention(dt).velocity > 0.0;
-    if (scene.kernel == Kernel::cubic)
-      keeps ? advance_block<CubicKernel, true>(k, dt, block_sums_[k])
-            : advance_block<CubicKernel, false>(k, dt, block_sums_[k]);
-    else
-      keeps ? advance_block<QuadraticKernel, true>(k, dt, block_sums_[k])
-            : advance_block<QuadraticKernel, false>(k, dt, block_sums_[k]);
+    choose(scene.kernel, retention(dt).velocity > 0.0, averages(), [&]<class K, bool A, bool B>() {
+      advance_block<K, A, B>(k, dt, block_sums_[k]);
+    });
   });
 }
 
-template <class Kernel, bool keeps>
+template <class Kernel, bool keeps, bool averages>
 void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& sums) {
   const PointBlock& pb = grid.point_blocks[block];
   VelocityTile tile;
@@ -205,6 +216,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
     tile.ux.fill(0.0);
     tile.uy.fill(0.0);
   }
+  if (averages) tile.pressure.fill(0.0);
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       const std::int32_t source = pb.node_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
@@ -223,6 +235,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
             tile.ux[to] = nb.ux[from];
             tile.uy[to] = nb.uy[from];
           }
+          if (averages) tile.pressure[to] = nb.pressure[from];
         }
     }
 
@@ -232,9 +245,9 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
     const Range& range = pb.range[b];
     if (range.count == 0) continue;
     const std::size_t n = padded(range.count);
-    scratch.assign(10 * n, 0.0);
-    const Motion motion{scratch.data() + 8 * n, scratch.data() + 9 * n};
-    tile_to_points<Kernel, keeps>(tile, tile_origin(pb), grid.h(), range, retention(dt), points,
+    scratch.assign(12 * n, 0.0);
+    const Motion motion{scratch.data() + 8 * n, scratch.data() + 9 * n, scratch.data() + 10 * n};
+    tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, retention(dt), points,
                                   motion);
     move(points, range, motion, dt, sums);
 
@@ -262,7 +275,14 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
     batch.work = work;
     batch.modulus = modulus;
     batch.viscosity = viscous ? viscosity : nullptr;
+    double* const averaging = motion.pressure;  // the mean pressure becomes a volumetric strain
+    double* const pressure_before = scratch.data() + 11 * n;
+    if (averages) {
+      add_averaging_strain(*points.material, batch, scene.pressure_averaging, averaging,
+                           pressure_before, {e_xx, e_yy, e_zz, e_xy});
+    }
     const UpdateReport report = points.material->update(batch);
+    if (averages) take_back_averaging_work(batch, averaging, pressure_before);
     if (!report.ok() && sums.failure.empty()) {
       const std::size_t k = report.failed;
       sums.failure = fmt::format(

@@ -12,16 +12,16 @@ Lanes lanes(const Row& r) {
 }
 
 /// Sums of a stencil kept in registers while consecutive points share the same stencil.
-template <int rows>
+template <int rows, std::size_t channels>
 struct Accumulator {
-  Row sum[tile_channels][rows];
+  Row sum[channels][rows];
 
   void clear() {
     for (auto& channel : sum)
       for (Row& r : channel) r = Row(0.0);
   }
   void add_to(Tile& tile, std::size_t node) const {
-    for (std::size_t c = 0; c < tile_channels; ++c)
+    for (std::size_t c = 0; c < channels; ++c)
       for (std::size_t j = 0; j < rows; ++j) {
         double* at = tile[c].data() + node + j * tile_stride;
         (Row::load_unaligned(at) + sum[c][j]).store_unaligned(at);
@@ -35,9 +35,9 @@ std::size_t tile_place(int base_x, int base_y, const std::array<int, 2>& origin)
 
 }  // namespace
 
-template <class Kernel, bool affine>
+template <class Kernel, bool affine, bool averages>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    Tile& tile) {
+                    const std::array<double, 2>& gravity, Tile& tile) {
   constexpr int rows = Kernel::rows;
   const double inv_h = 1.0 / h;
   const double inv_D = Kernel::inverse_moment * inv_h * inv_h;
@@ -47,7 +47,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
   const double *sxx = points[SXX], *syy = points[SYY], *sxy = points[SXY];
   const double *rho = points[RHO], *mass = points[MASS];
 
-  Accumulator<rows> stencil;
+  Accumulator<rows, averages ? tile_channels : T_PRESSURE> stencil;
   stencil.clear();
   constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
   std::size_t current = nowhere;
@@ -74,6 +74,14 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
     const Row w_fx_dy = w_V * Row(sxy[k]);  // also f_y's share of dx
     const Row w_fy = w_fx_dy * dx;
     const Row w_fy_dy = w_V * Row(syy[k]);
+    Row w_pressure(0.0), w_pressure_dy(0.0);
+    if constexpr (averages) {
+      // without contact (p = 0) there is no hydrostatic gradient either
+      const double p = -(sxx[k] + syy[k] + points[SZZ][k]) / 3.0;
+      const double weight = p == 0.0 ? 0.0 : rho[k];
+      w_pressure = w_m * xsimd::fma(Row(weight * gravity[0]), dx, Row(p));
+      w_pressure_dy = w_m * Row(weight * gravity[1]);
+    }
     const Lanes w_row = lanes(wy.w);
     const Lanes w_dy = lanes(wy.w * wy.d * Row(h));
 #pragma GCC unroll 4
@@ -85,6 +93,9 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
       stencil.sum[T_PY][j] = xsimd::fma(wd, w_py_dy, xsimd::fma(w, w_py, stencil.sum[T_PY][j]));
       stencil.sum[T_FX][j] = xsimd::fma(wd, w_fx_dy, xsimd::fma(w, w_fx, stencil.sum[T_FX][j]));
       stencil.sum[T_FY][j] = xsimd::fma(wd, w_fy_dy, xsimd::fma(w, w_fy, stencil.sum[T_FY][j]));
+      if constexpr (averages)
+        stencil.sum[T_PRESSURE][j] =
+            xsimd::fma(wd, w_pressure_dy, xsimd::fma(w, w_pressure, stencil.sum[T_PRESSURE][j]));
     }
   }
   if (current != nowhere) stencil.add_to(tile, current);
@@ -122,9 +133,18 @@ Interpolated interpolate(const double* field_x, const double* field_y, const Wei
   return {a[0], a[1], a[2] * inv_D, b[0] * inv_D, a[3] * inv_D, b[1] * inv_D};
 }
 
+template <class Kernel>
+double interpolate(const double* field, const Weights& wx, const Lanes& w_row) {
+  Row sum(0.0);
+#pragma GCC unroll 4
+  for (std::size_t j = 0; j < Kernel::rows; ++j)
+    sum = xsimd::fma(Row(w_row[j]), Row::load_unaligned(field + j * tile_stride), sum);
+  return xsimd::hadd(sum * wx.w);
+}
+
 }  // namespace
 
-template <class Kernel, bool keeps>
+template <class Kernel, bool keeps, bool averages>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
                     const Range& range, const Retention& keep, PointSet& points, Motion motion) {
   const double inv_h = 1.0 / h;
@@ -145,6 +165,9 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
                                                dx, w_row, w_dy, inv_D);
     motion.vx[k - range.begin] = v.vx;
     motion.vy[k - range.begin] = v.vy;
+    if constexpr (averages)
+      motion.pressure[k - range.begin] =
+          interpolate<Kernel>(tile.pressure.data() + place, wx, w_row);
     if constexpr (keeps) {
       const Interpolated u = interpolate<Kernel>(tile.ux.data() + place, tile.uy.data() + place, wx,
                                                  dx, w_row, w_dy, inv_D);
@@ -167,17 +190,20 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
   }
 }
 
-#define REPOSE_TRANSFERS(KERNEL)                                                                 \
-  template void points_to_tile<KERNEL, true>(const PointSet&, const Range&, double,              \
-                                             std::array<int, 2>, Tile&);                         \
-  template void points_to_tile<KERNEL, false>(const PointSet&, const Range&, double,             \
-                                              std::array<int, 2>, Tile&);                        \
-  template void tile_to_points<KERNEL, true>(const VelocityTile&, std::array<int, 2>, double,    \
-                                             const Range&, const Retention&, PointSet&, Motion); \
-  template void tile_to_points<KERNEL, false>(const VelocityTile&, std::array<int, 2>, double,   \
-                                              const Range&, const Retention&, PointSet&, Motion);
-REPOSE_TRANSFERS(CubicKernel)
-REPOSE_TRANSFERS(QuadraticKernel)
+#define REPOSE_TRANSFERS(KERNEL, A, B)                                                        \
+  template void points_to_tile<KERNEL, A, B>(const PointSet&, const Range&, double,             \
+                                             std::array<int, 2>, const std::array<double, 2>&,  \
+                                             Tile&);                                            \
+  template void tile_to_points<KERNEL, A, B>(const VelocityTile&, std::array<int, 2>, double,   \
+                                             const Range&, const Retention&, PointSet&, Motion);
+REPOSE_TRANSFERS(CubicKernel, true, true)
+REPOSE_TRANSFERS(CubicKernel, true, false)
+REPOSE_TRANSFERS(CubicKernel, false, true)
+REPOSE_TRANSFERS(CubicKernel, false, false)
+REPOSE_TRANSFERS(QuadraticKernel, true, true)
+REPOSE_TRANSFERS(QuadraticKernel, true, false)
+REPOSE_TRANSFERS(QuadraticKernel, false, true)
+REPOSE_TRANSFERS(QuadraticKernel, false, false)
 #undef REPOSE_TRANSFERS
 
 }  // namespace repose::mpm

@@ -6,6 +6,8 @@
 ///   m_i = Σ w m_p,   p_i = Σ w m_p (v_p + L_p (x_i − x_p)),
 ///   f_i = −Σ w V_p D⁻¹ σ_p (x_i − x_p),                      D = h²/4 (quadratic), h²/3 (cubic)
 ///   v_p = Σ w v_i,   L_p = Σ w v_i (x_i − x_p)ᵀ D⁻¹.
+/// Where pressures are averaged (pressure_averaging.hpp), also
+///   p_i = Σ w m_p (p_p + ρ_p g·(x_i − x_p))/m_i,   p̄_p = Σ w p_i.
 
 #include "mpm/grid.hpp"
 #include "mpm/kernel.hpp"
@@ -23,24 +25,28 @@ struct Retention {
 
 /// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.
-template <class Kernel, bool affine>
+/// `averages`: the pressure goes along, under the gravity g.
+template <class Kernel, bool affine, bool averages>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    Tile& tile);
+                    const std::array<double, 2>& gravity, Tile& tile);
 
 /// Velocity at the nodes of a tile, before (u) and after (v) forces.
 struct VelocityTile {
   std::array<double, tile_nodes> vx, vy, ux, uy;
+  std::array<double, tile_nodes> pressure;  ///< only where pressures are averaged
 };
 
-/// The velocity Σ w v_i that moves a range's points, from its first one on.
+/// The velocity Σ w v_i that moves a range's points, from its first one on, and the mean pressure
+/// around them.
 struct Motion {
   double *vx, *vy;
+  double* pressure = nullptr;  ///< p̄; only where pressures are averaged
 };
 
 /// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY, the
 /// affine velocity) and gives the velocity that moves them. Without `keeps`, both retentions are 0
 /// and ux, uy are not read.
-template <class Kernel, bool keeps>
+template <class Kernel, bool keeps, bool averages>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
                     const Range& range, const Retention& keep, PointSet& points, Motion motion);
 
