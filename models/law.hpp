@@ -71,8 +71,7 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 ///   modulus(P, σ, state, ρ)          P-wave modulus ρc² [Pa]
 ///   viscosity(P, σ, ρ, D)            shear viscosity that limits an explicit step [Pa·s]
 ///   stored_energy(P, σ, state, ρ)    recoverable energy per current volume [J/m³]
-///   strain_to_pressure(P, σ, state, ρ, p*)  elastic volumetric strain, extension positive, from
-///                                    the present pressure to p*
+///   elastic_volume_strain(P, σ, state, ρ)  −∫dp/K from p = 0 (or where contact is made) [-]
 ///   density_at(P, p, ocr)            ρ at rest under pressure p [kg/m³]
 ///   initial(P, conditions)           InitialPoint; throws InputError
 template <class L>
@@ -94,7 +93,7 @@ concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
   { L::modulus(P, stress, state, x) } -> std::same_as<double>;
   { L::viscosity(P, stress, x, stress) } -> std::same_as<double>;
   { L::stored_energy(P, stress, state, x) } -> std::same_as<double>;
-  { L::strain_to_pressure(P, stress, state, x, x) } -> std::same_as<double>;
+  { L::elastic_volume_strain(P, stress, state, x) } -> std::same_as<double>;
   { L::density_at(P, x, x) } -> std::same_as<double>;
   { L::initial(P, given) } -> std::same_as<InitialPoint>;
 };

@@ -93,12 +93,11 @@ class LawMaterial final : public Material {
     }
   }
 
-  void strain_to_pressure(const Batch& batch, double* pressure_to_strain) const override {
+  void elastic_volume_strain(const Batch& batch, double* strain) const override {
     for (std::size_t i = 0; i < batch.count; i += pack_size) {
       const Point point = load_point(batch, i);
-      L::strain_to_pressure(packed_, point.stress, point.state, load(batch.density + i),
-                            load(pressure_to_strain + i))
-          .store_unaligned(pressure_to_strain + i);
+      L::elastic_volume_strain(packed_, point.stress, point.state, load(batch.density + i))
+          .store_unaligned(strain + i);
     }
   }
 

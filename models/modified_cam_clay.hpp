@@ -131,20 +131,15 @@ struct ModifiedCamClay {
     return select(apart, T(0.0), T(compression_energy + contract(s, s) / (T(4.0) * G)));
   }
 
-  /// Along the swelling line, MCC-5: ln v + κ ln p̃ or v + κ ln p̃ constant, tr Δε = ln(v*/v). Not
-  /// below the pressure at which contact is lost; none for a point that is separated.
+  /// −κ* ln(p̃/p̃_contact), MCC-4, from where contact is made; 0 for a point that is separated.
   template <class T, int N>
-  static T strain_to_pressure(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
-                              const T& density, const T& p_new) {
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
+                                 const T& density) {
     using std::log;
-    const auto apart = at[i_rho_sep] > T(0.0);
-    const T from = select(apart, T(1.0), T(pressure(stress) + P.p_shift));
-    const T lowest = contact_pressure(P);
-    const T target = p_new + P.p_shift;
-    const T to = select(target < lowest, lowest, target);
-    const T swelling = -kappa_star(P, specific_volume(P, density)) * log(to / from);
-    const T strain = compression == Compression::ln_v_ln_p ? swelling : T(log(T(1.0) + swelling));
-    return select(apart, T(0.0), strain);
+    const T contact = contact_pressure(P);
+    const T p = pressure(stress) + P.p_shift;
+    const T bearing = select(at[i_rho_sep] > T(0.0) || p < contact, contact, p);
+    return -kappa_star(P, specific_volume(P, density)) * log(bearing / contact);
   }
 
   /// At rest under p with p_c = ocr p, on the law's own lines; needs Γ or N.

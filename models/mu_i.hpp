@@ -64,12 +64,11 @@ T compression_energy(const P& par, const T& density) {
   return select(r < T(1.0), T(0.0), T(par.K * (r * log(r) - r + T(1.0))));
 }
 
-/// tr Δε = ln(ρ/ρ*) with MUI-1 for both; from p = 0 as if grains touched (ρ = ρ0), for nothing
-/// brings a loose point to a pressure before it does.
+/// −∫dp/K with K = K_0 + p of MUI-1 (K_0: at p = 0): ln(ρ0/ρ) in contact, 0 for a loose point.
 template <class P, class T>
-T strain_to_pressure(const P& par, const T& p, const T& p_new) {
+T elastic_volume_strain(const P& par, const T& p) {
   using std::log;
-  return log((par.K + p) / (par.K + floor_at(p_new, 0.0)));
+  return -log(T(1.0) + p / par.K);
 }
 
 template <class P>
@@ -223,9 +222,9 @@ struct MuIElastoviscoplastic {
   }
 
   template <class T, int N>
-  static T strain_to_pressure(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
-                              const T&, const T& p_new) {
-    return mu_i::strain_to_pressure(P, pressure(stress), p_new);
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                                 const T&) {
+    return mu_i::elastic_volume_strain(P, pressure(stress));
   }
 
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {
@@ -340,9 +339,9 @@ struct MuIRegularised {
   }
 
   template <class T, int N>
-  static T strain_to_pressure(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
-                              const T&, const T& p_new) {
-    return mu_i::strain_to_pressure(P, pressure(stress), p_new);
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                                 const T&) {
+    return mu_i::elastic_volume_strain(P, pressure(stress));
   }
 
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {

@@ -107,13 +107,12 @@ struct Newtonian {
     return tension == Tension::cut_off ? select(density < P.rho_0, T(0.0), W) : W;
   }
 
-  /// tr Δε = ln(ρ/ρ*), ρ = ρ0 (1 + p/K)^{1/α}                                            NEW-1
+  /// ln(ρ0/ρ) with p = K[(ρ/ρ0)^α − 1]; 0 where tension is cut off
   template <class T, int N>
-  static T strain_to_pressure(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
-                              const T&, const T& p_new) {
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                                 const T&) {
     using std::log;
-    const T target = tension == Tension::cut_off ? floor_at(p_new, 0.0) : p_new;
-    return log((P.K + pressure(stress)) / (P.K + target)) / P.alpha;
+    return -log(T(1.0) + pressure(stress) / P.K) / P.alpha;
   }
 
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {

@@ -28,8 +28,8 @@ constexpr int tile_rows = block_ny + 5;
 constexpr int tile_stride = 16;  // room for the idle fourth lane of the quadratic kernel
 constexpr int tile_nodes = tile_stride * tile_rows;
 
-/// What points hand to nodes; T_PRESSURE, the last, only where pressures are averaged.
-enum TileChannel : std::size_t { T_MASS, T_PX, T_PY, T_FX, T_FY, T_PRESSURE, tile_channels };
+/// What points hand to nodes; T_ELASTIC, the last, only where pressures are averaged.
+enum TileChannel : std::size_t { T_MASS, T_PX, T_PY, T_FX, T_FY, T_ELASTIC, tile_channels };
 using Tile = std::array<std::array<double, tile_nodes>, tile_channels>;
 
 /// The points of one block, all bodies.
@@ -48,7 +48,8 @@ struct NodeBlock {
   std::array<double, block_nodes> mirrored_mass{};
   std::array<double, block_nodes> ux{}, uy{};  ///< velocity before forces (from the points) [m/s]
   std::array<double, block_nodes> vx{}, vy{};  ///< velocity after forces, then after walls [m/s]
-  std::array<double, block_nodes> pressure{};  ///< mass average of the points' (averaging only)
+  /// Mass average of the points' elastic volume strain (pressure averaging only) [-]
+  std::array<double, block_nodes> elastic{};
 };
 
 class Grid {

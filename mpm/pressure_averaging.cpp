@@ -24,15 +24,14 @@ double shear_strain(const std::array<double*, 4>& strain, std::size_t k) {
 void add_averaging_strain(const Material& material, const Batch& batch, double rate,
                           double* averaging, double* pressure_before,
                           const std::array<double*, 4>& strain) {
+  double* const own = pressure_before;  // first the strains, then the pressures
+  material.elastic_volume_strain(batch, own);
   for (std::size_t k = 0; k < batch.count; ++k) {
-    const double p = pressure_of(batch, k);
     const double share = -std::expm1(-rate * shear_strain(strain, k));
-    pressure_before[k] = p;
-    averaging[k] = p + share * (averaging[k] - p);
-  }
-  material.strain_to_pressure(batch, averaging);
-  for (std::size_t k = 0; k < batch.count; ++k)
+    averaging[k] = share * (averaging[k] - own[k]);
+    pressure_before[k] = pressure_of(batch, k);
     for (std::size_t i = 0; i < 3; ++i) strain[i][k] += averaging[k] / 3.0;
+  }
 }
 
 void take_back_averaging_work(const Batch& batch, const double* averaging,

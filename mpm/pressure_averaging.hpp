@@ -5,15 +5,17 @@
 /// A point integrates its own density. With several points per cell there are more of them than
 /// the nodes' momentum can tell apart: patterns of pressure whose forces cancel on the grid meet no
 /// resistance, and flow feeds them, until they are as large as the pressure itself. They are taken
-/// away where they arise, in deformation: with p̄_p the pressure of the neighbourhood,
-///   p_i = Σ w m_p (p_p + ρ_p g·(x_i − x_p))/m_i,   p̄_p = Σ w p_i,
-///   p_p* = p_p + (1 − e^{−c γ̇ Δt}) (p̄_p − p_p),    γ̇ = √(2 D′:D′),
-/// a point's strain increment gets in addition the elastic volumetric strain from p_p to p_p*
-/// (isotropic), so that density, stress and history stay those of one material.
-///  - Σ m p̄ = Σ m p, and a hydrostatic pressure is reproduced up to surface and floor: the affine
-///    term needs no gradient but ρ g, and no condition at walls.
+/// away where they arise, in deformation. With e = −∫dp/K the elastic volume strain of a point, its
+/// strain increment gets in addition, isotropically,
+///   e_i = Σ w m_p e_p/m_i (even in walls),   ē_p = Σ w e_i,
+///   tr Δε_p = (1 − e^{−c γ̇ Δt}) (ē_p − e_p),    γ̇ = √(2 D′:D′),
+/// so that density, stress and history stay those of one material, whatever its pressure follows.
+///  - Σ m ē = Σ m e: what some points gain in volume the others lose (exactly so where γ̇ is
+///    uniform). An average of pressures would not do that, K being another at every point.
 ///  - e^{−cγ}: the same for any Δt; nothing at rest, nor in rigid motion; objective.
+///  - A mean: no new extremes, and the wave speed, hence the stable step, is as before.
 ///  - Its work is no work of the motion: what it takes from the stored energy counts as dissipated.
+/// Noise relative to p grows as (K/p)/c, hence c of the order of K/(ρ g H); 1/κ in Cam-Clay.
 
 #include <array>
 
@@ -22,8 +24,7 @@
 namespace repose::mpm {
 
 /// Adds the averaging strain to a batch's strain increments (xx, yy, zz, xy). `averaging`: in the
-/// mean pressures p̄ [Pa], out the volumetric strains; `pressure_before` gets the pressures p_p.
-/// `rate` = c [-].
+/// means ē, out the volume strains added; `pressure_before` gets the pressures [Pa]. `rate` = c [-].
 void add_averaging_strain(const Material& material, const Batch& batch, double rate,
                           double* averaging, double* pressure_before,
                           const std::array<double*, 4>& strain);

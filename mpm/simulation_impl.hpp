@@ -81,7 +81,7 @@ class Simulation::Impl {
   void move(PointSet& points, const Range& range, const Motion& motion, double dt,
             BlockSums& sums) const;
   bool averages() const { return scene.pressure_averaging > 0.0; }
-  std::size_t channels() const { return averages() ? tile_channels : T_PRESSURE; }
+  std::size_t channels() const { return averages() ? tile_channels : T_ELASTIC; }
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
   void remove_outflow();

@@ -140,9 +140,15 @@ void Simulation::Impl::transfer_to_tile(std::size_t block) {
   const PointBlock& pb = grid.point_blocks[block];
   Tile& tile = grid.tiles[block];
   for (std::size_t c = 0; c < channels(); ++c) tile[c].fill(0.0);
-  for (std::size_t b = 0; b < bodies.size(); ++b)
+  static thread_local std::vector<double> elastic;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (averages) {
+      elastic.resize(padded(pb.range[b].count));
+      bodies[b].material->elastic_volume_strain(bodies[b].batch(pb.range[b]), elastic.data());
+    }
     points_to_tile<Kernel, affine, averages>(bodies[b], pb.range[b], grid.h(), tile_origin(pb),
-                                             gravity, tile);
+                                             elastic.data(), tile);
+  }
 }
 
 void Simulation::Impl::points_to_grid() {
@@ -188,7 +194,7 @@ void Simulation::Impl::update_grid(double dt) {
       nb.uy[n] = uy;
       nb.vx[n] = wx;
       nb.vy[n] = wy;
-      if (averages()) nb.pressure[n] = sum[T_PRESSURE][n] * inv_m;
+      if (averages()) nb.elastic[n] = sum[T_ELASTIC][n] * inv_m;
       sums.before += 0.5 * m * (ux * ux + uy * uy);
       sums.after += 0.5 * m * (wx * wx + wy * wy);
       sums.impulse_work += m * ((wx - ux) * ux + (wy - uy) * uy);
@@ -216,7 +222,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
     tile.ux.fill(0.0);
     tile.uy.fill(0.0);
   }
-  if (averages) tile.pressure.fill(0.0);
+  if (averages) tile.elastic.fill(0.0);
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       const std::int32_t source = pb.node_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
@@ -235,7 +241,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
             tile.ux[to] = nb.ux[from];
             tile.uy[to] = nb.uy[from];
           }
-          if (averages) tile.pressure[to] = nb.pressure[from];
+          if (averages) tile.elastic[to] = nb.elastic[from];
         }
     }
 
@@ -275,7 +281,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
     batch.work = work;
     batch.modulus = modulus;
     batch.viscosity = viscous ? viscosity : nullptr;
-    double* const averaging = motion.pressure;  // the mean pressure becomes a volumetric strain
+    double* const averaging = motion.elastic;  // the mean becomes the averaging strain
     double* const pressure_before = scratch.data() + 11 * n;
     if (averages) {
       add_averaging_strain(*points.material, batch, scene.pressure_averaging, averaging,

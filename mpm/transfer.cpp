@@ -37,7 +37,7 @@ std::size_t tile_place(int base_x, int base_y, const std::array<int, 2>& origin)
 
 template <class Kernel, bool affine, bool averages>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    const std::array<double, 2>& gravity, Tile& tile) {
+                    const double* elastic, Tile& tile) {
   constexpr int rows = Kernel::rows;
   const double inv_h = 1.0 / h;
   const double inv_D = Kernel::inverse_moment * inv_h * inv_h;
@@ -47,7 +47,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
   const double *sxx = points[SXX], *syy = points[SYY], *sxy = points[SXY];
   const double *rho = points[RHO], *mass = points[MASS];
 
-  Accumulator<rows, averages ? tile_channels : T_PRESSURE> stencil;
+  Accumulator<rows, averages ? tile_channels : T_ELASTIC> stencil;
   stencil.clear();
   constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
   std::size_t current = nowhere;
@@ -74,14 +74,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
     const Row w_fx_dy = w_V * Row(sxy[k]);  // also f_y's share of dx
     const Row w_fy = w_fx_dy * dx;
     const Row w_fy_dy = w_V * Row(syy[k]);
-    Row w_pressure(0.0), w_pressure_dy(0.0);
-    if constexpr (averages) {
-      // without contact (p = 0) there is no hydrostatic gradient either
-      const double p = -(sxx[k] + syy[k] + points[SZZ][k]) / 3.0;
-      const double weight = p == 0.0 ? 0.0 : rho[k];
-      w_pressure = w_m * xsimd::fma(Row(weight * gravity[0]), dx, Row(p));
-      w_pressure_dy = w_m * Row(weight * gravity[1]);
-    }
+    const Row w_e = averages ? w_m * Row(elastic[k - range.begin]) : Row(0.0);
     const Lanes w_row = lanes(wy.w);
     const Lanes w_dy = lanes(wy.w * wy.d * Row(h));
 #pragma GCC unroll 4
@@ -94,8 +87,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
       stencil.sum[T_FX][j] = xsimd::fma(wd, w_fx_dy, xsimd::fma(w, w_fx, stencil.sum[T_FX][j]));
       stencil.sum[T_FY][j] = xsimd::fma(wd, w_fy_dy, xsimd::fma(w, w_fy, stencil.sum[T_FY][j]));
       if constexpr (averages)
-        stencil.sum[T_PRESSURE][j] =
-            xsimd::fma(wd, w_pressure_dy, xsimd::fma(w, w_pressure, stencil.sum[T_PRESSURE][j]));
+        stencil.sum[T_ELASTIC][j] = xsimd::fma(w, w_e, stencil.sum[T_ELASTIC][j]);
     }
   }
   if (current != nowhere) stencil.add_to(tile, current);
@@ -166,8 +158,8 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     motion.vx[k - range.begin] = v.vx;
     motion.vy[k - range.begin] = v.vy;
     if constexpr (averages)
-      motion.pressure[k - range.begin] =
-          interpolate<Kernel>(tile.pressure.data() + place, wx, w_row);
+      motion.elastic[k - range.begin] =
+          interpolate<Kernel>(tile.elastic.data() + place, wx, w_row);
     if constexpr (keeps) {
       const Interpolated u = interpolate<Kernel>(tile.ux.data() + place, tile.uy.data() + place, wx,
                                                  dx, w_row, w_dy, inv_D);
@@ -192,7 +184,7 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
 
 #define REPOSE_TRANSFERS(KERNEL, A, B)                                                        \
   template void points_to_tile<KERNEL, A, B>(const PointSet&, const Range&, double,             \
-                                             std::array<int, 2>, const std::array<double, 2>&,  \
+                                             std::array<int, 2>, const double*,  \
                                              Tile&);                                            \
   template void tile_to_points<KERNEL, A, B>(const VelocityTile&, std::array<int, 2>, double,   \
                                              const Range&, const Retention&, PointSet&, Motion);

@@ -7,7 +7,7 @@
 ///   f_i = −Σ w V_p D⁻¹ σ_p (x_i − x_p),                      D = h²/4 (quadratic), h²/3 (cubic)
 ///   v_p = Σ w v_i,   L_p = Σ w v_i (x_i − x_p)ᵀ D⁻¹.
 /// Where pressures are averaged (pressure_averaging.hpp), also
-///   p_i = Σ w m_p (p_p + ρ_p g·(x_i − x_p))/m_i,   p̄_p = Σ w p_i.
+///   e_i = Σ w m_p e_p/m_i,   ē_p = Σ w e_i.
 
 #include "mpm/grid.hpp"
 #include "mpm/kernel.hpp"
@@ -25,22 +25,22 @@ struct Retention {
 
 /// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.
-/// `averages`: the pressure goes along, under the gravity g.
+/// `averages`: `elastic`, the range's elastic volume strains, go along; else it is not read.
 template <class Kernel, bool affine, bool averages>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    const std::array<double, 2>& gravity, Tile& tile);
+                    const double* elastic, Tile& tile);
 
 /// Velocity at the nodes of a tile, before (u) and after (v) forces.
 struct VelocityTile {
   std::array<double, tile_nodes> vx, vy, ux, uy;
-  std::array<double, tile_nodes> pressure;  ///< only where pressures are averaged
+  std::array<double, tile_nodes> elastic;  ///< only where pressures are averaged
 };
 
-/// The velocity Σ w v_i that moves a range's points, from its first one on, and the mean pressure
-/// around them.
+/// The velocity Σ w v_i that moves a range's points, from its first one on, and the mean
+/// elastic volume strain around them.
 struct Motion {
   double *vx, *vy;
-  double* pressure = nullptr;  ///< p̄; only where pressures are averaged
+  double* elastic = nullptr;  ///< ē; only where pressures are averaged
 };
 
 /// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY, the

@@ -41,7 +41,7 @@ class TransferTest : public ::testing::Test {
   static Tile scattered(const PointSet& points) {
     Tile tile;
     for (auto& channel : tile) channel.fill(0.0);
-    points_to_tile<K, true, false>(points, {0, points.count}, h, origin, {}, tile);
+    points_to_tile<K, true, false>(points, {0, points.count}, h, origin, nullptr, tile);
     return tile;
   }
   static double x_of(std::size_t n) { return (origin[0] + static_cast<int>(n) % tile_stride) * h; }
