@@ -124,6 +124,9 @@ void read_step(TomlReader table, mpm::Scene& scene) {
     table.report("transfer", "without gravity, relaxed needs step.relaxation_time [s]");
   if (!relaxed && scene.relaxation_time)
     table.report("relaxation_time", "only step.transfer = \"relaxed\" has a relaxation time");
+  scene.pressure_averaging =
+      table.number({"pressure_averaging", "-", "of neighbouring points, per unit of shear strain",
+                    not_negative, scene.pressure_averaging});
   scene.courant = table.number(
       {"courant", "-", "share of the stable step", Range{0.0, 1.0, true, false}, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});

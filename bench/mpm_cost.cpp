@@ -68,7 +68,7 @@ std::optional<Work> transfer_work(Kernel kernel, Transfer transfer, std::size_t 
                          n * n * ((kind->affine ? 10.0 : 6.0) + 8.0);
   const double from_grid = weights + reads * (8.0 * n * n + 6.0 * n + 6.0 * (n - 1.0) + 4.0) +
                            (kind->keeps ? 6.0 : 0.0) + (kind->apart ? 12.0 : 0.0);
-  const double used_tile = mpm::tile_columns * mpm::tile_rows;
+  const double used_tile = (mpm::block_nx + 5.0) * mpm::tile_rows;
   Work work;
   work.flops = to_grid + from_grid + 4.0 + 6.0 + (viscous ? 36.0 : 34.0) +
                tiles_per_point * 5.0 * used_tile + node_blocks_per_point * 30.0 * mpm::block_nodes;

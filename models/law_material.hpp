@@ -54,6 +54,14 @@ class LawMaterial final : public Material {
     }
   }
 
+  void elastic_volume_strain(const Batch& batch, double* strain) const override {
+    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+      const auto point = load_point<Pack>(batch, i);
+      L::elastic_volume_strain(packed_, point.stress, point.state, load<Pack>(batch.density + i))
+          .store_unaligned(strain + i);
+    }
+  }
+
   InitialPoint initial(const InitialConditions& given) const override {
     return L::initial(plain_, given);
   }

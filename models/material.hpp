@@ -73,6 +73,10 @@ class Material {
   /// ρc² [Pa] of each point as it is.
   virtual void modulus(const Batch& batch, double* rho_c2) const = 0;
 
+  /// Elastic volume strain of each point, extension positive, −∫dp/K from where it carries no
+  /// pressure [-]; 0 for one that carries none.
+  virtual void elastic_volume_strain(const Batch& batch, double* strain) const = 0;
+
   /// Throws InputError if the law cannot start from these conditions.
   virtual InitialPoint initial(const InitialConditions& given) const = 0;
 

@@ -57,6 +57,7 @@ void check_numbers(const Scene& scene) {
     throw InputError("grid.points_per_cell",
                      "points_per_cell = " + std::to_string(scene.points_per_cell) +
                          " must be a square number from 1 to 100: 1, 4, 9, 16, ...");
+  require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
   require(scene.courant, {0.0, 1.0, true, false}, "step.courant", "courant");
   if (scene.dt) require(*scene.dt, positive, "step.dt", "dt");
   require(scene.frame_interval, not_negative, "output.frame_interval", "frame_interval");

@@ -80,6 +80,9 @@ struct Scene {
   Transfer transfer = Transfer::apic;
   /// [s], for Transfer::relaxed; absent: default_relaxation_time()
   std::optional<double> relaxation_time;
+  /// c: the pressure noise of the points decays as e^{−cγ} in shear γ [-]; 0: no averaging. Of the
+  /// order of K/(ρ g H). See pressure_averaging.hpp.
+  double pressure_averaging = 0.0;
 
   double courant = 0.4;      ///< Δt = courant · h/(c + |v|), if dt is absent
   std::optional<double> dt;  ///< fixed step [s]

@@ -248,6 +248,12 @@ Simulation::Profile Simulation::profile() const {
   return p;
 }
 
+RestPressure Simulation::rest_pressure() const {
+  const Impl& s = *impl_;
+  const double h = s.grid.h();
+  return mpm::rest_pressure(s.bodies, h, h * s.grid.nx(), -s.gravity[1], 2.0 * h, 0.25);
+}
+
 Simulation::Snapshot Simulation::snapshot() const {
   struct Place {
     std::int64_t id;

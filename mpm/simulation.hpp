@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "mpm/frame_writer.hpp"
+#include "mpm/rest_pressure.hpp"
 #include "mpm/scene.hpp"
 
 namespace repose::mpm {
@@ -76,6 +77,10 @@ class Simulation {
     std::vector<double> x_m, depth_m;
   };
   Profile profile() const;
+
+  /// Pressure against overburden, for a deposit at rest (gravity along −y): points deeper than 2h
+  /// below the surface, where the deposit has at least a quarter of its greatest depth.
+  RestPressure rest_pressure() const;
 
   /// All points in a fixed order (their order of creation), for frames and pictures.
   struct Snapshot {

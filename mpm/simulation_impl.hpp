@@ -72,14 +72,14 @@ class Simulation::Impl {
     bool outflow = false;
     std::string failure;
   };
-  template <class Kernel, bool affine>
+  template <class Kernel, bool affine, bool averages>
   void transfer_to_tile(std::size_t block);
-  template <class Kernel, Keeps keeps>
+  template <class Kernel, Keeps keeps, bool averages>
   void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
   void move(PointSet& points, const Range& range, const Motion& motion, double dt,
             BlockSums& sums) const;
   /// Brings a range's stress to the end of the step; `scratch` has room for scratch_arrays arrays.
-  static constexpr std::size_t scratch_arrays = 10;
+  static constexpr std::size_t scratch_arrays = 12;
   void strain(PointSet& points, std::size_t body, const Range& range, const Motion& motion,
               double dt, double* scratch, BlockSums& sums) const;
   /// Adds a range's energies, work, power and signals after its update.
@@ -87,6 +87,8 @@ class Simulation::Impl {
               BlockSums& sums) const;
   /// How far a point may be from the cell it was sorted into [m].
   double reach() const { return 0.98 * grid.h(); }
+  bool averages() const { return scene.pressure_averaging > 0.0; }
+  std::size_t channels() const { return averages() ? tile_channels : T_ELASTIC; }
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
   void remove_outflow();

@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "mpm/pressure_averaging.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/transfer.hpp"
 
@@ -42,6 +43,20 @@ void for_each_shared_row(int dx, int dy, F&& f) {
     else
       f(node + block_nx - tile_margin_x, entry, Four{});
   }
+}
+
+/// Calls f with the kernel's type and with a and b as constants, all chosen at run time.
+template <class F>
+void choose(Kernel kernel, bool a, bool b, F&& f) {
+  using Yes = std::true_type;
+  using No = std::false_type;
+  const auto with = [&](auto k) {
+    if (a)
+      b ? f(k, Yes{}, Yes{}) : f(k, Yes{}, No{});
+    else
+      b ? f(k, No{}, Yes{}) : f(k, No{}, No{});
+  };
+  kernel == Kernel::cubic ? with(CubicKernel{}) : with(QuadraticKernel{});
 }
 
 /// The larger of two; a NaN in `x` is kept, so that it cannot slip through a maximum.
@@ -125,23 +140,29 @@ Retention Simulation::Impl::retention(double dt) const {
   return {true, keep, keep};
 }
 
-template <class Kernel, bool affine>
+template <class Kernel, bool affine, bool averages>
 void Simulation::Impl::transfer_to_tile(std::size_t block) {
   const PointBlock& pb = grid.point_blocks[block];
   Tile& tile = grid.tiles[block];
-  for (auto& channel : tile) channel.fill(0.0);
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    points_to_tile<Kernel, affine>(bodies[b], pb.range[b], grid.h(), tile_origin(pb), tile);
+  for (std::size_t c = 0; c < channels(); ++c) tile[c].fill(0.0);
+  static thread_local AlignedVector<double> elastic;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Range& range = pb.range[b];
+    if constexpr (averages) {
+      elastic.resize(std::max(elastic.size(), padded(range.count)));
+      bodies[b].material->elastic_volume_strain(bodies[b].batch(range), elastic.data());
+    }
+    points_to_tile<Kernel, affine, averages>(bodies[b], range, grid.h(), tile_origin(pb),
+                                             elastic.data(), tile);
+  }
 }
 
 void Simulation::Impl::points_to_grid() {
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    const bool affine = retention(0.0).affine;
-    if (scene.kernel == Kernel::cubic)
-      affine ? transfer_to_tile<CubicKernel, true>(k) : transfer_to_tile<CubicKernel, false>(k);
-    else
-      affine ? transfer_to_tile<QuadraticKernel, true>(k)
-             : transfer_to_tile<QuadraticKernel, false>(k);
+    choose(scene.kernel, retention(0.0).affine, averages(),
+           [&]<class K>(K, auto affine, auto averages) {
+             transfer_to_tile<K, affine.value, averages.value>(k);
+           });
   });
 }
 
@@ -157,7 +178,7 @@ void Simulation::Impl::update_grid(double dt) {
         if (source < 0) continue;
         const Tile& tile = grid.tiles[static_cast<std::size_t>(source)];
         for_each_shared_row(dx, dy, [&](std::size_t node, std::size_t entry, auto columns) {
-          for (std::size_t c = 0; c < tile_channels; ++c) {
+          for (std::size_t c = 0; c < channels(); ++c) {
             const double* from = tile[c].data() + entry;
             double* to = sum[c].data() + node;
             for (std::size_t i = 0; i < columns; i += Row::size)
@@ -187,6 +208,7 @@ void Simulation::Impl::update_grid(double dt) {
       uy.store_aligned(nb.uy.data() + n);
       wx.store_aligned(nb.vx.data() + n);
       wy.store_aligned(nb.vy.data() + n);
+      if (averages()) (at(T_ELASTIC) * inv_m).store_aligned(nb.elastic.data() + n);
       before = before + half * m * (ux * ux + uy * uy);
       after = after + half * m * (wx * wx + wy * wy);
       impulse_work = impulse_work + m * (kick_x * ux + kick_y * uy);
@@ -198,26 +220,27 @@ void Simulation::Impl::update_grid(double dt) {
 void Simulation::Impl::grid_to_points(double dt) {
   block_sums_.assign(grid.point_blocks.size(), BlockSums{});
   const Retention keep = retention(dt);
-  const auto advance = [&]<class Kernel>(Kernel, std::size_t k) {
+  const auto advance = [&]<class Kernel>(Kernel, auto affine, auto averages, std::size_t k) {
+    BlockSums& sums = block_sums_[k];
     if (keep.gradient > 0.0)
-      advance_block<Kernel, Keeps::velocity_and_gradient>(k, dt, keep, block_sums_[k]);
+      advance_block<Kernel, Keeps::velocity_and_gradient, averages.value>(k, dt, keep, sums);
     else if (keep.velocity > 0.0)
-      advance_block<Kernel, Keeps::velocity>(k, dt, keep, block_sums_[k]);
+      advance_block<Kernel, Keeps::velocity, averages.value>(k, dt, keep, sums);
     else
-      advance_block<Kernel, Keeps::nothing>(k, dt, keep, block_sums_[k]);
+      advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
     // While the points of the block are in the cache: their way to the grid of the next step. If
     // any of them has left the tile, all blocks are sorted first (sort_if_needed), and this waits.
-    const BlockSums& sums = block_sums_[k];
     if (drift + sums.signals.speed * dt < reach() && sums.failure.empty())
-      keep.affine ? transfer_to_tile<Kernel, true>(k) : transfer_to_tile<Kernel, false>(k);
+      transfer_to_tile<Kernel, affine.value, averages.value>(k);
   };
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    scene.kernel == Kernel::cubic ? advance(CubicKernel{}, k) : advance(QuadraticKernel{}, k);
+    choose(scene.kernel, keep.affine, averages(),
+           [&](auto kernel, auto affine, auto averages) { advance(kernel, affine, averages, k); });
   });
   tiles_are_current = true;  // unless points have left them, and then sort_if_needed() says so
 }
 
-template <class Kernel, Keeps keeps>
+template <class Kernel, Keeps keeps, bool averages>
 void Simulation::Impl::advance_block(std::size_t block, double dt, const Retention& keep,
                                      BlockSums& sums) {
   const PointBlock& pb = grid.point_blocks[block];
@@ -244,6 +267,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, const Retenti
     fill(&VelocityTile::ux, &NodeBlock::ux);
     fill(&VelocityTile::uy, &NodeBlock::uy);
   }
+  if constexpr (averages) fill(&VelocityTile::elastic, &NodeBlock::elastic);
 
   static thread_local AlignedVector<double> scratch;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -251,10 +275,11 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, const Retenti
     if (range.count == 0) continue;
     const std::size_t n = padded(range.count);
     if (scratch.size() < scratch_arrays * n) scratch.resize(scratch_arrays * n);
-    const Motion motion{scratch.data(), scratch.data() + n};
-    tile_to_points<Kernel, keeps>(tile, tile_origin(pb), grid.h(), range, keep, bodies[b], motion);
+    const Motion motion{scratch.data(), scratch.data() + n, scratch.data() + 2 * n};
+    tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, keep, bodies[b],
+                                            motion);
     move(bodies[b], range, motion, dt, sums);
-    strain(bodies[b], b, range, motion, dt, scratch.data() + 2 * n, sums);
+    strain(bodies[b], b, range, motion, dt, scratch.data() + 3 * n, sums);
   }
 }
 
@@ -327,7 +352,12 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   batch.work = work;
   batch.modulus = modulus;
   batch.viscosity = points.material->law().has_stress_memory ? nullptr : viscosity;
+  double* const pressure_before = viscosity + n;
+  if (averages())
+    add_averaging_strain(*points.material, batch, scene.pressure_averaging, motion.elastic,
+                         pressure_before, {e_xx, e_yy, e_zz, e_xy});
   const UpdateReport report = points.material->update(batch);
+  if (averages()) take_back_averaging_work(batch, motion.elastic, pressure_before);
   if (!report.ok() && sums.failure.empty()) {
     const std::size_t k = report.failed;
     sums.failure = fmt::format(

@@ -24,6 +24,7 @@ REPOSE_INLINE inline void unrolled(F&& f) {
 /// The coefficients of a pack of points.
 enum Coefficient : std::size_t {
   C_M,
+  C_E,
   C_PX,
   C_PY,
   C_XX,
@@ -38,12 +39,12 @@ enum Coefficient : std::size_t {
 
 /// Sums of a stencil kept in registers while consecutive points share the same stencil: all of its
 /// rows, side by side. (Every index is known to the compiler, or they would live in memory.)
-template <class Kernel>
+template <class Kernel, bool averages>
 class Accumulator {
  public:
   Accumulator() { clear(); }
   REPOSE_INLINE void clear() {
-    unrolled<tile_channels * packs_per_stencil>([&](auto k) REPOSE_INLINE { sum_[k] = Pack(0.0); });
+    unrolled<channels * packs_per_stencil>([&](auto k) REPOSE_INLINE { sum_[k] = Pack(0.0); });
   }
 
   template <bool affine>
@@ -68,11 +69,12 @@ class Accumulator {
       add(std::integral_constant<std::size_t, T_PY>{}, affine ? xsimd::fma(of(C_YY), dy, py) : py);
       add(std::integral_constant<std::size_t, T_FX>{}, xsimd::fma(of(C_FXY), dy, fx));
       add(std::integral_constant<std::size_t, T_FY>{}, xsimd::fma(of(C_FYY), dy, fy));
+      if constexpr (averages) add(std::integral_constant<std::size_t, T_ELASTIC>{}, of(C_E));
     });
   }
 
   REPOSE_INLINE void add_to(Tile& tile, std::size_t node) const {
-    unrolled<tile_channels>([&](auto c) REPOSE_INLINE {
+    unrolled<channels>([&](auto c) REPOSE_INLINE {
       unrolled<Kernel::rows>([&](auto row) REPOSE_INLINE {
         double* at = tile[c].data() + node + row * tile_stride;
         const Row sum =
@@ -83,14 +85,15 @@ class Accumulator {
   }
 
  private:
-  Pack sum_[tile_channels * packs_per_stencil];
+  static constexpr std::size_t channels = averages ? tile_channels : T_ELASTIC;
+  Pack sum_[channels * packs_per_stencil];
 };
 
 }  // namespace
 
-template <class Kernel, bool affine>
+template <class Kernel, bool affine, bool averages>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    Tile& tile) {
+                    const double* elastic, Tile& tile) {
   const double inv_h = 1.0 / h;
   // −V D⁻¹ h and the affine velocity times h: distances are in units of h
   const Pack minus_D_h(-Kernel::inverse_moment * inv_h);
@@ -100,7 +103,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
   const Pack y_1(origin[1] + 1.0);
   const std::size_t a = points.affine;
 
-  Accumulator<Kernel> stencil;
+  Accumulator<Kernel, averages> stencil;
   constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
   std::size_t current = nowhere;
   for (std::size_t first = 0; first < range.count; first += Pack::size) {
@@ -112,6 +115,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
     const Pack m = at(MASS);
     const Pack V = m / at(RHO) * minus_D_h;
     m.store_aligned(c[C_M]);
+    if constexpr (averages) (m * Pack::load_aligned(elastic + first)).store_aligned(c[C_E]);
     (m * at(VX)).store_aligned(c[C_PX]);
     (m * at(VY)).store_aligned(c[C_PY]);
     if constexpr (affine) {
@@ -223,7 +227,7 @@ class PackStencil {
 
 }  // namespace
 
-template <class Kernel, Keeps keeps>
+template <class Kernel, Keeps keeps, bool averages>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
                     const Range& range, const Retention& keep, PointSet& points, Motion motion) {
   const Pack inv_h(1.0 / h);
@@ -239,11 +243,13 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     const auto put = [&](std::size_t f, const Pack& x) { x.store_aligned(points[f] + s); };
     const PackStencil<Kernel> stencil(at(X) * inv_h - x_0, at(Y) * inv_h - y_0);
     Moments vx, vy, ux, uy;
+    Pack elastic(0.0);
     stencil.for_each_row([&](std::size_t row, const Pack& w, const Pack& d) {
       const std::size_t n = row * tile_stride;
       const Pack w_d = w * d;
       stencil.add(tile.vx.data() + n, w, w_d, vx);
       stencil.add(tile.vy.data() + n, w, w_d, vy);
+      if constexpr (averages) stencil.add(tile.elastic.data() + n, w, elastic);
       if constexpr (keeps == Keeps::velocity) {
         stencil.add(tile.ux.data() + n, w, ux.value);
         stencil.add(tile.uy.data() + n, w, uy.value);
@@ -254,6 +260,7 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     });
     vx.value.store_aligned(motion.vx + k);
     vy.value.store_aligned(motion.vy + k);
+    if constexpr (averages) elastic.store_aligned(motion.elastic + k);
     const Pack L[4] = {vx.dx * inv_D_h, vx.dy * inv_D_h, vy.dx * inv_D_h, vy.dy * inv_D_h};
     if constexpr (keeps == Keeps::nothing) {
       put(VX, vx.value);
@@ -270,22 +277,24 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
   }
 }
 
-#define REPOSE_TRANSFERS(KERNEL)                                                                  \
-  template void points_to_tile<KERNEL, true>(const PointSet&, const Range&, double,               \
-                                             std::array<int, 2>, Tile&);                          \
-  template void points_to_tile<KERNEL, false>(const PointSet&, const Range&, double,              \
-                                              std::array<int, 2>, Tile&);                         \
-  template void tile_to_points<KERNEL, Keeps::nothing>(const VelocityTile&, std::array<int, 2>,   \
-                                                       double, const Range&, const Retention&,    \
-                                                       PointSet&, Motion);                        \
-  template void tile_to_points<KERNEL, Keeps::velocity>(const VelocityTile&, std::array<int, 2>,  \
-                                                        double, const Range&, const Retention&,   \
-                                                        PointSet&, Motion);                       \
-  template void tile_to_points<KERNEL, Keeps::velocity_and_gradient>(                             \
-      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&, \
+#define REPOSE_TRANSFERS(KERNEL, AVERAGES)                                                         \
+  template void points_to_tile<KERNEL, true, AVERAGES>(const PointSet&, const Range&, double,      \
+                                                       std::array<int, 2>, const double*, Tile&);  \
+  template void points_to_tile<KERNEL, false, AVERAGES>(const PointSet&, const Range&, double,     \
+                                                        std::array<int, 2>, const double*, Tile&); \
+  template void tile_to_points<KERNEL, Keeps::nothing, AVERAGES>(                                  \
+      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&,  \
+      Motion);                                                                                     \
+  template void tile_to_points<KERNEL, Keeps::velocity, AVERAGES>(                                 \
+      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&,  \
+      Motion);                                                                                     \
+  template void tile_to_points<KERNEL, Keeps::velocity_and_gradient, AVERAGES>(                    \
+      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&,  \
       Motion);
-REPOSE_TRANSFERS(CubicKernel)
-REPOSE_TRANSFERS(QuadraticKernel)
+REPOSE_TRANSFERS(CubicKernel, true)
+REPOSE_TRANSFERS(CubicKernel, false)
+REPOSE_TRANSFERS(QuadraticKernel, true)
+REPOSE_TRANSFERS(QuadraticKernel, false)
 #undef REPOSE_TRANSFERS
 
 }  // namespace repose::mpm
