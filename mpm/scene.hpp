@@ -52,6 +52,14 @@ enum class Transfer {
 /// Their names in scene files, in the same order.
 constexpr std::array<std::string_view, 5> transfer_names{"pic", "flip", "apic", "aflip", "relaxed"};
 
+/// How the viscous stress of laws without stress memory acts.
+enum class Viscosity {
+  explicit_force,  ///< as a force of the stress from the last step; limits the step to 0.9 ρh²/4η
+  implicit_solve,  ///< solved for at the end of the step (implicit_viscosity.hpp); no limit
+};
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 2> viscosity_names{"explicit", "implicit"};
+
 struct Scene {
   std::string name;
   double end_time = 0.0;  ///< [s]
@@ -72,6 +80,11 @@ struct Scene {
   Transfer transfer = Transfer::apic;
   /// [s], for Transfer::relaxed; absent: default_relaxation_time()
   std::optional<double> relaxation_time;
+
+  Viscosity viscosity = Viscosity::explicit_force;
+  /// Largest error of an implicit step's velocity, over the velocity that its forces bring
+  /// (root mean square by mass); implicit_viscosity.hpp says what it bounds.
+  double viscosity_tolerance = 1e-3;
 
   double courant = 0.4;      ///< Δt = courant · h/(c + |v|), if dt is absent
   std::optional<double> dt;  ///< fixed step [s]

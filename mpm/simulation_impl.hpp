@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include "mpm/grid.hpp"
+#include "mpm/implicit_viscosity.hpp"
 #include "mpm/ledger.hpp"
 #include "mpm/simulation.hpp"
 #include "mpm/step_size.hpp"
@@ -24,6 +25,7 @@ class Simulation::Impl {
   double choose_step(double stop_at) const;
   void points_to_grid();           ///< P2G: mass, momentum, internal force of every block's tile
   void update_grid(double dt);     ///< sum tiles, accelerate nodes
+  void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
   void grid_to_points(double dt);  ///< G2P, move, update stress; throws NumericalFailure
   void close_ledger();             ///< kinetic energies before and after; throws NumericalFailure
 
@@ -53,6 +55,7 @@ class Simulation::Impl {
   bool must_sort = true;
   std::int64_t sorts = 0;
   std::int64_t wall_corrections = 0;
+  std::int64_t newton_iterations = 0, cg_iterations = 0;  ///< of the implicit viscosity
   double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
   double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
   double first_dt = 0.0;
@@ -95,6 +98,8 @@ class Simulation::Impl {
   };
   std::vector<NodeSums> node_sums_;
   WallEffect wall_effect_;
+  ImplicitViscosity viscosity_;
+  ViscousEffect viscous_effect_;
 };
 
 }  // namespace repose::mpm

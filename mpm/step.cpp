@@ -1,38 +1,13 @@
 /// The explicit step (APIC with moving-least-squares forces), stage by stage.
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "mpm/block_loops.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/transfer.hpp"
 
 namespace repose::mpm {
 namespace {
-
-/// Calls f(k) for k in [0, n) on the arena's threads; f must only write what belongs to k.
-template <class F>
-void for_each_block(tbb::task_arena& arena, std::size_t n, F&& f) {
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](const auto& part) {
-      for (std::size_t k = part.begin(); k != part.end(); ++k) f(k);
-    });
-  });
-}
-
-std::array<int, 2> tile_origin(const PointBlock& pb) {
-  return {Grid::first_x(pb.bx) - tile_margin, Grid::first_y(pb.by) - tile_margin};
-}
-
-/// The part of a tile that overlaps a node block in one direction: nodes [begin, end) of the block,
-/// node n being tile entry n + shift. `offset` = tile's block − node block, −1, 0 or 1.
-struct Overlap {
-  int begin, end, shift;
-  Overlap(int offset, int block_size)
-      : begin(std::max(0, offset * block_size - tile_margin)),
-        end(std::min(block_size, offset * block_size + block_size + 5 - tile_margin)),
-        shift(tile_margin - offset * block_size) {}
-};
 
 /// What sum_up() collects, for one point or a pack of them.
 template <class T>
@@ -72,6 +47,7 @@ void Simulation::Impl::step(double stop_at) {
   points_to_grid();
   update_grid(dt);
   wall_effect_ = apply_walls(grid, walls);
+  solve_viscosity(dt);
   grid_to_points(dt);
   last_dt = dt;
   dt_min = std::min(dt_min, dt);
@@ -254,7 +230,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
       e_xy[k] = 0.5 * dt * (points[LXY][s] + points[LYX][s]);
       spin[k] = 0.5 * dt * (points[LYX][s] - points[LXY][s]);
     }
-    const bool viscous = !points.material->law().has_stress_memory;
+    const bool viscous = !points.material->law().has_stress_memory && !points.splits_stress();
     Batch batch = points.batch(range);
     batch.dt = dt;
     batch.strain = {e_xx, e_yy, e_zz, e_xy};
@@ -271,6 +247,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, BlockSums& su
           "in {:.3g} s",
           describe(points, b, range.begin + k), e_xx[k], e_yy[k], e_xy[k], dt);
     }
+    if (points.splits_stress()) split_stress(points, range, batch);
     // A point alone in its stencil has the density m Σw²/h² (Σw² = 0.21 to 0.25, cubic; more,
     // quadratic); looser than that the grid cannot tell, and spray would dilate without end.
     const double inv_h2 = 1.0 / (grid.h() * grid.h());
@@ -301,7 +278,11 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
     // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
     total.work =
         total.work + m * inv_rho * (T(1.0) - T(0.5) * strain_v) * lanes_at<T>(batch.work + k);
-    const T stress_power = at(SXX) * at(LXX) + at(SYY) * at(LYY) + at(SXY) * (at(LXY) + at(LYX));
+    const auto force_stress = [&](std::size_t c) {
+      return lanes_at<T>(points[points.force_stress[c]] + s);
+    };
+    const T stress_power = force_stress(0) * at(LXX) + force_stress(1) * at(LYY) +
+                           force_stress(2) * (at(LXY) + at(LYX));
     total.power = total.power + m * (T(gravity[0]) * moving_x + T(gravity[1]) * moving_y -
                                      stress_power * inv_rho);
     const T speed = sqrt(moving_x * moving_x + moving_y * moving_y);
@@ -381,14 +362,14 @@ void Simulation::Impl::close_ledger() {
   // at the whole step, with half a kick on both sides (ledger.hpp)
   const double points_to_nodes =
       (ledger.kinetic + 0.5 * last_dt * ledger.power) - (nodes.before + 0.5 * nodes.impulse_work);
-  const double nodes_to_points = nodes.after + wall_effect_.kinetic_after - kinetic;
+  const double nodes_to_points = nodes.after + wall_effect_.kinetic_after + viscous_effect_.kinetic - kinetic;
   const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
   const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
   ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
   ledger.kinetic = kinetic;
   ledger.power = power;
-  ledger.stress_work += work;
+  ledger.stress_work += work + viscous_effect_.half_jump_work;
   drift += now.speed * last_dt;
   if (scene.dt) {
     fixed_step_excess = std::max(fixed_step_excess, last_dt * now.signal / grid.h());

@@ -44,7 +44,8 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
   const double *x = points[X], *y = points[Y], *vx = points[VX], *vy = points[VY];
   const std::size_t a = points.affine;
   const double *Axx = points[a], *Axy = points[a + 1], *Ayx = points[a + 2], *Ayy = points[a + 3];
-  const double *sxx = points[SXX], *syy = points[SYY], *sxy = points[SXY];
+  const std::array<std::size_t, 3>& stress = points.force_stress;
+  const double *sxx = points[stress[0]], *syy = points[stress[1]], *sxy = points[stress[2]];
   const double *rho = points[RHO], *mass = points[MASS];
 
   Accumulator<rows> stencil;
