@@ -1,7 +1,7 @@
 #include "mpm/implicit_viscosity.hpp"
 
 #include <cmath>
-#include <cstdlib>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -10,14 +10,9 @@
 namespace repose::mpm {
 namespace {
 
-constexpr int most_newton_iterations = 200;
-constexpr int most_cg_iterations = 5000;  // of one Newton step
-
-/// Calls f(block, component index, entry) for both components of all nodes of block k.
-template <class F>
-void each_entry(F&& f) {
-  for (std::size_t n = 0; n < block_nodes; ++n) f(n);
-}
+constexpr int most_newton_iterations = 100;  // of one step; 1 to 10 in any run so far
+constexpr int most_cg_iterations = 5000;     // of one Newton iteration; 10 to 300 so far
+constexpr int most_search_steps = 30;
 
 }  // namespace
 
@@ -38,192 +33,212 @@ void split_stress(PointSet& points, const Range& range, const Batch& batch) {
 }
 
 template <class F>
-double ImplicitViscosity::sum(F&& f) {
-  block_sums_.resize(v_.size());
-  for_each_block(*arena_, v_.size(), [&](std::size_t k) {
-    double total = 0.0;
-    for (std::size_t n = 0; n < block_nodes; ++n) total += f(k, n);
-    block_sums_[k] = total;
+void ImplicitViscosity::each_node(F&& f) {
+  const std::vector<std::size_t>& live = operator_.live();
+  for_each_block(*arena_, live.size(), [&](std::size_t l) {
+    for (std::size_t n = 0; n < block_nodes; ++n) f(live[l], n);
   });
-  double total = 0.0;
-  for (const double part : block_sums_) total += part;
+}
+
+template <std::size_t count, class F>
+std::array<double, count> ImplicitViscosity::sums(F&& f) {
+  const std::vector<std::size_t>& live = operator_.live();
+  block_sums_.resize(live.size());
+  for_each_block(*arena_, live.size(), [&](std::size_t l) {
+    std::array<double, count> total{};
+    for (std::size_t n = 0; n < block_nodes; ++n) {
+      const std::array<double, count> part = f(live[l], n);
+      for (std::size_t c = 0; c < count; ++c) total[c] += part[c];
+    }
+    std::copy(total.begin(), total.end(), block_sums_[l].begin());
+  });
+  std::array<double, count> total{};
+  for (const auto& part : block_sums_)
+    for (std::size_t c = 0; c < count; ++c) total[c] += part[c];
   return total;
 }
 
 double ImplicitViscosity::dot(const NodeVector& a, const NodeVector& b) {
-  return sum([&](std::size_t k, std::size_t n) {
-    return a[k].x[n] * b[k].x[n] + a[k].y[n] * b[k].y[n];
+  return sums<1>([&](std::size_t k, std::size_t n) {
+    return std::array{a[k].x[n] * b[k].x[n] + a[k].y[n] * b[k].y[n]};
+  })[0];
+}
+
+double ImplicitViscosity::residual_norm() {
+  return std::sqrt(sums<1>([&](std::size_t k, std::size_t n) {
+    const NodeField &R = R_[k], &w = inverse_mass_[k];
+    return std::array{R.x[n] * R.x[n] * w.x[n] + R.y[n] * R.y[n] * w.y[n]};
+  })[0]);
+}
+
+void ImplicitViscosity::add_inertia(const NodeVector& v, NodeVector& R) {
+  each_node([&](std::size_t k, std::size_t n) {
+    R[k].x[n] += mass_[k].x[n] * (v[k].x[n] - start_[k].x[n]);
+    R[k].y[n] += mass_[k].y[n] * (v[k].y[n] - start_[k].y[n]);
   });
 }
 
-double ImplicitViscosity::residual_norm(const NodeVector& R) {
-  return std::sqrt(sum([&](std::size_t k, std::size_t n) {
-    return R[k].x[n] * R[k].x[n] * inverse_mass_[k].x[n] +
-           R[k].y[n] * R[k].y[n] * inverse_mass_[k].y[n];
-  }));
+void ImplicitViscosity::residual(NodeVector& v, NodeVector& R) {
+  operator_.mirror().extend(v);
+  operator_.impulse(v, R);
+  add_inertia(v, R);
 }
 
-void ImplicitViscosity::residual(ViscousOperator& op, NodeVector& v, NodeVector& R) {
-  op.mirror().extend(v);
-  op.impulse(v, R);
-  for_each_block(*arena_, v.size(), [&](std::size_t k) {
-    for (std::size_t n = 0; n < block_nodes; ++n) {
-      R[k].x[n] += mass_[k].x[n] * (v[k].x[n] - start_[k].x[n]);
-      R[k].y[n] += mass_[k].y[n] * (v[k].y[n] - start_[k].y[n]);
-    }
-  });
-}
-
-bool ImplicitViscosity::newton_step(ViscousOperator& op, double wanted, int& iterations) {
-  op.diagonal(inverse_diagonal_);
+bool ImplicitViscosity::newton_step(const NodeVector& from, double share, int& iterations) {
+  operator_.diagonal(inverse_diagonal_);
   const auto inverse = [](double x) { return x > 0.0 ? 1.0 / x : 0.0; };
-  const double rz_start = [&] {
-    return sum([&](std::size_t k, std::size_t n) {
-      NodeField& B = inverse_diagonal_[k];
-      B.x[n] = inverse(B.x[n] + mass_[k].x[n]);
-      B.y[n] = inverse(B.y[n] + mass_[k].y[n]);
-      step_[k].x[n] = step_[k].y[n] = 0.0;
-      r_[k].x[n] = -R_[k].x[n];
-      r_[k].y[n] = -R_[k].y[n];
-      p_[k].x[n] = B.x[n] * r_[k].x[n];
-      p_[k].y[n] = B.y[n] * r_[k].y[n];
-      return r_[k].x[n] * p_[k].x[n] + r_[k].y[n] * p_[k].y[n];
-    });
-  }();
-  double rz = rz_start;
+  const auto first = sums<3>([&](std::size_t k, std::size_t n) {
+    NodeField &B = inverse_diagonal_[k], &r = r_[k], &p = p_[k];
+    const NodeField &m = mass_[k], &w = inverse_mass_[k];
+    B.x[n] += m.x[n];
+    B.y[n] += m.y[n];
+    const double scale_x = B.x[n] * from[k].x[n], scale_y = B.y[n] * from[k].y[n];
+    B.x[n] = inverse(B.x[n]);
+    B.y[n] = inverse(B.y[n]);
+    step_[k].x[n] = step_[k].y[n] = 0.0;
+    r.x[n] = -R_[k].x[n];
+    r.y[n] = -R_[k].y[n];
+    p.x[n] = B.x[n] * r.x[n];
+    p.y[n] = B.y[n] * r.y[n];
+    return std::array{r.x[n] * p.x[n] + r.y[n] * p.y[n],
+                      r.x[n] * r.x[n] * w.x[n] + r.y[n] * r.y[n] * w.y[n],
+                      scale_x * scale_x * w.x[n] + scale_y * scale_y * w.y[n]};
+  });
+  double rz = first[0];
+  // a residual is a sum over the 16 nodes of a stencil of terms as large as the diagonal's
+  round_off_ = 16.0 * std::numeric_limits<double>::epsilon() * std::sqrt(first[2]);
+  if (first[1] == 0.0) return true;
+  const double enough = share * std::sqrt(first[1]);
   for (int it = 0; it < most_cg_iterations; ++it) {
-    op.mirror().extend(p_);
-    op.apply(p_, q_);
+    operator_.mirror().extend(p_);
+    operator_.apply(p_, q_);
     ++iterations;
-    const double pq = sum([&](std::size_t k, std::size_t n) {
-      q_[k].x[n] += mass_[k].x[n] * p_[k].x[n];
-      q_[k].y[n] += mass_[k].y[n] * p_[k].y[n];
-      return p_[k].x[n] * q_[k].x[n] + p_[k].y[n] * q_[k].y[n];
-    });
-    if (!(pq > 0.0)) return rz == 0.0;
+    const double pq = sums<1>([&](std::size_t k, std::size_t n) {
+      NodeField& q = q_[k];
+      const NodeField &m = mass_[k], &p = p_[k];
+      q.x[n] += m.x[n] * p.x[n];
+      q.y[n] += m.y[n] * p.y[n];
+      return std::array{p.x[n] * q.x[n] + p.y[n] * q.y[n]};
+    })[0];
+    if (!(pq > 0.0)) return false;  // not a number: the operator is positive
     const double a = rz / pq;
-    const double rz_new = sum([&](std::size_t k, std::size_t n) {
-      step_[k].x[n] += a * p_[k].x[n];
-      step_[k].y[n] += a * p_[k].y[n];
-      r_[k].x[n] -= a * q_[k].x[n];
-      r_[k].y[n] -= a * q_[k].y[n];
-      z_[k].x[n] = inverse_diagonal_[k].x[n] * r_[k].x[n];
-      z_[k].y[n] = inverse_diagonal_[k].y[n] * r_[k].y[n];
-      return r_[k].x[n] * z_[k].x[n] + r_[k].y[n] * z_[k].y[n];
+    const auto now = sums<3>([&](std::size_t k, std::size_t n) {
+      NodeField &x = step_[k], &r = r_[k], &z = z_[k];
+      const NodeField &p = p_[k], &q = q_[k], &B = inverse_diagonal_[k];
+      const NodeField &m = mass_[k], &w = inverse_mass_[k];
+      x.x[n] += a * p.x[n];
+      x.y[n] += a * p.y[n];
+      r.x[n] -= a * q.x[n];
+      r.y[n] -= a * q.y[n];
+      z.x[n] = B.x[n] * r.x[n];
+      z.y[n] = B.y[n] * r.y[n];
+      const double dx = from[k].x[n] + x.x[n] - start_[k].x[n];
+      const double dy = from[k].y[n] + x.y[n] - start_[k].y[n];
+      return std::array{r.x[n] * z.x[n] + r.y[n] * z.y[n],
+                        r.x[n] * r.x[n] * w.x[n] + r.y[n] * r.y[n] * w.y[n],
+                        m.x[n] * dx * dx + m.y[n] * dy * dy};
     });
-    if (!(residual_norm(r_) > wanted)) return true;
-    const double b = rz_new / rz;
-    rz = rz_new;
-    for_each_block(*arena_, p_.size(), [&](std::size_t k) {
-      for (std::size_t n = 0; n < block_nodes; ++n) {
-        p_[k].x[n] = z_[k].x[n] + b * p_[k].x[n];
-        p_[k].y[n] = z_[k].y[n] + b * p_[k].y[n];
-      }
+    if (std::sqrt(now[1]) <= std::max(enough, 0.5 * allowed(std::sqrt(now[2])))) return true;
+    const double b = now[0] / rz;
+    rz = now[0];
+    each_node([&](std::size_t k, std::size_t n) {
+      p_[k].x[n] = z_[k].x[n] + b * p_[k].x[n];
+      p_[k].y[n] = z_[k].y[n] + b * p_[k].y[n];
     });
   }
   return false;
+}
+
+void ImplicitViscosity::search_along_step() {
+  // The potential along the step is convex: its slope R·δ is negative at 0 and grows. Take the whole
+  // step unless that leads far beyond the minimum; then come back by the secant.
+  const double slope_0 = dot(R_, step_);
+  double a = 1.0;
+  for (int it = 0; it < most_search_steps; ++it) {
+    each_node([&](std::size_t k, std::size_t n) {
+      trial_[k].x[n] = v_[k].x[n] + a * step_[k].x[n];
+      trial_[k].y[n] = v_[k].y[n] + a * step_[k].y[n];
+    });
+    residual(trial_, trial_R_);
+    const double slope = dot(trial_R_, step_);
+    if (slope <= 0.5 * std::abs(slope_0)) break;
+    a *= std::max(0.1, -slope_0 / (slope - slope_0));
+  }
+  operator_.take_stress_step(a);
+  v_.swap(trial_);
+  R_.swap(trial_R_);
 }
 
 ViscousEffect ImplicitViscosity::solve(Grid& grid, std::vector<PointSet>& bodies,
                                        const Walls& walls, Kernel kernel, double dt,
                                        double tolerance, tbb::task_arena& arena) {
   arena_ = &arena;
-  ViscousOperator& op = operator_;
-  op.prepare(grid, bodies, walls, kernel, dt, arena);
+  tolerance_ = tolerance;
+  operator_.prepare(grid, bodies, walls, kernel, dt, arena);
   const std::size_t blocks = grid.node_blocks.size();
   for (NodeVector* x : {&mass_, &inverse_mass_, &start_, &v_, &trial_, &R_, &trial_R_, &step_,
                         &inverse_diagonal_, &r_, &z_, &p_, &q_})
-    x->resize(blocks);
-  for (std::size_t k = 0; k < blocks; ++k) {
+    x->assign(blocks, NodeField{});
+  each_node([&](std::size_t k, std::size_t n) {
     const NodeBlock& nb = grid.node_blocks[k];
-    mass_[k] = {nb.mass, nb.mass};
-    start_[k] = v_[k] = {nb.vx, nb.vy};
-    trial_[k] = {nb.ux, nb.uy};
-  }
-  op.mirror().fold_diagonal(mass_);
-  const auto norm_M = [&](const NodeVector& a, const NodeVector& b) {
-    return std::sqrt(sum([&](std::size_t k, std::size_t n) {
-      const double x = a[k].x[n] - b[k].x[n], y = a[k].y[n] - b[k].y[n];
-      return mass_[k].x[n] * x * x + mass_[k].y[n] * y * y;
-    }));
+    mass_[k].x[n] = mass_[k].y[n] = nb.mass[n];
+    start_[k].x[n] = nb.vx[n];
+    start_[k].y[n] = nb.vy[n];
+    trial_[k].x[n] = nb.ux[n];
+    trial_[k].y[n] = nb.uy[n];
+  });
+  operator_.mirror().fold_diagonal(mass_);
+  each_node([&](std::size_t k, std::size_t n) {
+    inverse_mass_[k].x[n] = mass_[k].x[n] > 0.0 ? 1.0 / mass_[k].x[n] : 0.0;
+    inverse_mass_[k].y[n] = mass_[k].y[n] > 0.0 ? 1.0 / mass_[k].y[n] : 0.0;
+  });
+  const auto distance_from_start = [&](const NodeVector& v) {
+    return std::sqrt(sums<1>([&](std::size_t k, std::size_t n) {
+      const double x = v[k].x[n] - start_[k].x[n], y = v[k].y[n] - start_[k].y[n];
+      return std::array{mass_[k].x[n] * x * x + mass_[k].y[n] * y * y};
+    })[0]);
   };
-  for (std::size_t k = 0; k < blocks; ++k)
-    for (std::size_t n = 0; n < block_nodes; ++n) {
-      inverse_mass_[k].x[n] = mass_[k].x[n] > 0.0 ? 1.0 / mass_[k].x[n] : 0.0;
-      inverse_mass_[k].y[n] = mass_[k].y[n] > 0.0 ? 1.0 / mass_[k].y[n] : 0.0;
-    }
+  kick_ = distance_from_start(trial_);
 
+  // A first step from the state of the points, which nearly always is the last one too
   ViscousEffect effect;
-  const double explicit_kick = norm_M(start_, trial_);
-  // begin with v* or with u, whichever is closer to balance
-  residual(op, trial_, trial_R_);
-  residual(op, v_, R_);
-  double R = residual_norm(R_);
-  if (const double R_u = residual_norm(trial_R_); R_u < R) {
-    v_.swap(trial_);
-    residual(op, v_, R_);
-    R = R_u;
-  }
-  static const bool trace = std::getenv("REPOSE_TRACE") != nullptr;
-  static const bool picard = std::getenv("REPOSE_PICARD") != nullptr;
-  for (;;) {
-    effect.allowed = tolerance * (explicit_kick + norm_M(v_, start_));
-    effect.residual = R;
-    if (trace) fmt::print("  {} R {:.3e} allowed {:.3e} cg {}\n", effect.newton_iterations, R, effect.allowed, effect.cg_iterations);
-    if (R <= effect.allowed) break;
-    if (effect.newton_iterations == most_newton_iterations) {
-      effect.converged = false;
-      break;
-    }
-    ++effect.newton_iterations;
-    op.linearise(picard);
-    if (!newton_step(op, std::max(0.5 * effect.allowed, 0.1 * R), effect.cg_iterations)) {
-      effect.converged = false;
-      break;
-    }
-    op.mirror().extend(step_);
-    op.step_stress(step_);
-    // The potential along the step is convex: its slope R·δ is negative at 0 and grows. Take the
-    // whole step unless it leads beyond the minimum by more than it began before it.
-    const double slope_0 = dot(R_, step_);
-    double low = 0.0, high = 1.0, a = 1.0, slope_low = slope_0;
-    for (int it = 0; it < 30; ++it) {
-      for_each_block(*arena_, blocks, [&](std::size_t k) {
-        for (std::size_t n = 0; n < block_nodes; ++n) {
-          trial_[k].x[n] = v_[k].x[n] + a * step_[k].x[n];
-          trial_[k].y[n] = v_[k].y[n] + a * step_[k].y[n];
-        }
-      });
-      residual(op, trial_, trial_R_);
-      const double slope = dot(trial_R_, step_);
-      if (trace) fmt::print("     a {:.3e} slope {:.3e} of {:.3e} R {:.3e}\n", a, slope, slope_0, residual_norm(trial_R_));
-      if (slope <= 0.5 * std::abs(slope_0)) {
-        if (slope >= 0.9 * slope_0 || true) break;
-      }
-      high = a;
-      a = std::max(low + 0.1 * (high - low), low + (high - low) * (-slope_low) / (slope - slope_low));
-    }
-    op.take_stress_step(a);
-    v_.swap(trial_);
-    R_.swap(trial_R_);
-    R = residual_norm(R_);
+  operator_.state_of_points();
+  operator_.linearise();
+  operator_.linear_impulse(trial_, R_);
+  add_inertia(trial_, R_);
+  effect.converged = newton_step(trial_, 0.0, effect.cg_iterations);
+  effect.newton_iterations = 1;
+  each_node([&](std::size_t k, std::size_t n) {
+    v_[k].x[n] = trial_[k].x[n] + step_[k].x[n];
+    v_[k].y[n] = trial_[k].y[n] + step_[k].y[n];
+  });
+  residual(v_, R_);
+  while (effect.converged) {
+    effect.allowed = allowed(distance_from_start(v_));
+    effect.residual = residual_norm();
+    if (effect.residual <= effect.allowed) break;
+    operator_.linearise();
+    effect.converged = effect.newton_iterations++ < most_newton_iterations &&
+                       newton_step(v_, 0.1, effect.cg_iterations);
+    operator_.mirror().extend(step_);
+    operator_.step_stress(step_);
+    search_along_step();
   }
 
-  effect.kinetic = sum([&](std::size_t k, std::size_t n) {
+  const auto work = sums<2>([&](std::size_t k, std::size_t n) {
     const NodeBlock& nb = grid.node_blocks[k];
-    return 0.5 * (mass_[k].x[n] * (v_[k].x[n] * v_[k].x[n] - nb.vx[n] * nb.vx[n]) +
-                  mass_[k].y[n] * (v_[k].y[n] * v_[k].y[n] - nb.vy[n] * nb.vy[n]));
+    const double vx = v_[k].x[n], vy = v_[k].y[n];
+    const double px = mass_[k].x[n] * (vx - nb.vx[n]), py = mass_[k].y[n] * (vy - nb.vy[n]);
+    return std::array{0.5 * (px * (vx + nb.vx[n]) + py * (vy + nb.vy[n])),
+                      -0.5 * (px * (vx - nb.ux[n]) + py * (vy - nb.uy[n]))};
   });
-  effect.half_jump_work = -0.5 * sum([&](std::size_t k, std::size_t n) {
-    const NodeBlock& nb = grid.node_blocks[k];
-    return mass_[k].x[n] * (v_[k].x[n] - nb.vx[n]) * (v_[k].x[n] - nb.ux[n]) +
-           mass_[k].y[n] * (v_[k].y[n] - nb.vy[n]) * (v_[k].y[n] - nb.uy[n]);
+  effect.kinetic = work[0];
+  effect.half_jump_work = work[1];
+  operator_.mirror().extend(v_);
+  each_node([&](std::size_t k, std::size_t n) {
+    grid.node_blocks[k].vx[n] = v_[k].x[n];
+    grid.node_blocks[k].vy[n] = v_[k].y[n];
   });
-  op.mirror().extend(v_);
-  for (std::size_t k = 0; k < blocks; ++k) {
-    grid.node_blocks[k].vx = v_[k].x;
-    grid.node_blocks[k].vy = v_[k].y;
-  }
   return effect;
 }
 

@@ -39,22 +39,33 @@ class ImplicitViscosity {
                       double dt, double tolerance, tbb::task_arena& arena);
 
  private:
-  /// Sums over the nodes, in a fixed order.
+  /// Calls f(a node block's index, a node's place in it) for all nodes that may hold mass.
   template <class F>
-  double sum(F&& f);
+  void each_node(F&& f);
+  /// Sums of f(block, place), an array of numbers, over the nodes in a fixed order.
+  template <std::size_t n, class F>
+  std::array<double, n> sums(F&& f);
   double dot(const NodeVector& a, const NodeVector& b);
-  /// |R|_{M⁻¹}
-  double residual_norm(const NodeVector& R);
-  /// R(v)
-  void residual(ViscousOperator& op, NodeVector& v, NodeVector& R);
-  /// (M + ΔtK) step = −R until its residual is `wanted` in M⁻¹; false after too many iterations.
-  bool newton_step(ViscousOperator& op, double wanted, int& iterations);
+  double residual_norm();  ///< |R|_{M⁻¹}
+  void add_inertia(const NodeVector& v, NodeVector& R);
+  /// R(v) for v = E y; extends v.
+  void residual(NodeVector& v, NodeVector& R);
+  /// Largest residual allowed where the velocity has changed by `change` from v* [√J].
+  double allowed(double change) const { return tolerance_ * (kick_ + change) + round_off_; }
+  /// (M + ΔtK) step = −R, starting from the field `from`, until its residual is `share` of R or half
+  /// of what is allowed; false after too many iterations.
+  bool newton_step(const NodeVector& from, double share, int& iterations);
+  /// Takes as much of the step as brings the potential down.
+  void search_along_step();
 
   tbb::task_arena* arena_ = nullptr;
   ViscousOperator operator_;
+  double tolerance_ = 0.0;
+  double kick_ = 0.0;       ///< |v* − u|_M
+  double round_off_ = 0.0;  ///< of |R|_{M⁻¹}
   NodeVector mass_, inverse_mass_, start_, v_, trial_, R_, trial_R_, step_;
   NodeVector inverse_diagonal_, r_, z_, p_, q_;
-  std::vector<double> block_sums_;
+  std::vector<std::array<double, 3>> block_sums_;
 };
 
 }  // namespace repose::mpm

@@ -116,6 +116,11 @@ void ViscousOperator::prepare(Grid& grid, std::vector<PointSet>& bodies, const W
   kernel_ = kernel;
   dt_ = dt;
   mirror_.connect(grid, walls);
+  live_.clear();
+  for (std::size_t k = 0; k < grid.node_blocks.size(); ++k) {
+    const auto& mass = grid.node_blocks[k].mass;
+    if (std::any_of(mass.begin(), mass.end(), [](double m) { return m > 0.0; })) live_.push_back(k);
+  }
   bodies_.resize(bodies.size());
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     bodies_[b].points = bodies[b].splits_stress() ? &bodies[b] : nullptr;
@@ -177,9 +182,9 @@ void ViscousOperator::gather(const NodeVector& v, std::size_t block, VectorTile&
 
 /// Owners sum what the tiles around put on their nodes, always in the same order.
 void ViscousOperator::sum_tiles(NodeVector& f) {
-  for_each_block(*arena_, grid_->node_blocks.size(), [&](std::size_t k) {
-    const NodeBlock& nb = grid_->node_blocks[k];
-    NodeField& sum = f[k];
+  for_each_block(*arena_, live_.size(), [&](std::size_t l) {
+    const NodeBlock& nb = grid_->node_blocks[live_[l]];
+    NodeField& sum = f[live_[l]];
     sum.x.fill(0.0);
     sum.y.fill(0.0);
     for (int dy = -1; dy <= 1; ++dy)
@@ -272,15 +277,6 @@ class StencilSum {
 }  // namespace
 
 template <int rows>
-void ViscousOperator::strain_of(std::size_t block, const VectorTile& tile,
-                                Plane PointData::*strain) {
-  for_points(block, [&](PointData& point) {
-    point.*strain = strain_at<rows>(point.weights.data(), tile.x.data() + point.place,
-                                    tile.y.data() + point.place);
-  });
-}
-
-template <int rows>
 void ViscousOperator::stress_to_tile(std::size_t block) {
   VectorTile& tile = tiles_[block];
   tile.x.fill(0.0);
@@ -325,7 +321,10 @@ void ViscousOperator::impulse(const NodeVector& v, NodeVector& f) {
     for_each_block(*arena_, grid_->point_blocks.size(), [&](std::size_t k) {
       VectorTile tile;
       gather(v, k, tile);
-      strain_of<rows>(k, tile, &PointData::strain);
+      for_points(k, [&](PointData& point) {
+        point.strain = strain_at<rows>(point.weights.data(), tile.x.data() + point.place,
+                                       tile.y.data() + point.place);
+      });
       evaluate_law(k);
       for_points(k, [&](PointData& point) {
         const Deviator D(point.strain);
@@ -339,7 +338,43 @@ void ViscousOperator::impulse(const NodeVector& v, NodeVector& f) {
   mirror_.fold(f);
 }
 
-void ViscousOperator::linearise(bool picard) {
+void ViscousOperator::state_of_points() {
+  for_each_block(*arena_, grid_->point_blocks.size(), [&](std::size_t k) {
+    for (BodyPoints& body : bodies_) {
+      if (body.points == nullptr) continue;
+      const PointSet& points = *body.points;
+      const Range& range = grid_->point_blocks[k].range[body_index(body)];
+      for (std::size_t s = range.begin; s < range.begin + range.count; ++s)
+        body.data[s].strain = {points[LXX][s], points[LYY][s], points[LXY][s] + points[LYX][s]};
+    }
+    evaluate_law(k);
+  });
+}
+
+void ViscousOperator::linear_impulse(const NodeVector& v, NodeVector& f) {
+  with_rows(kernel_, [&](auto rows) {
+    for_each_block(*arena_, grid_->point_blocks.size(), [&](std::size_t k) {
+      VectorTile tile;
+      gather(v, k, tile);
+      for_points(k, [&](PointData& point) {
+        Plane e = strain_at<rows>(point.weights.data(), tile.x.data() + point.place,
+                                  tile.y.data() + point.place);
+        for (std::size_t c = 0; c < 3; ++c) e[c] -= point.strain[c];
+        const Deviator D(point.strain);
+        const double factor = 2.0 * point.eta * point.volume_dt;
+        const std::array<double, 6>& C = point.tangent;
+        point.load = {factor * D.xx + C[0] * e[0] + C[1] * e[1] + C[2] * e[2],
+                      factor * D.yy + C[1] * e[0] + C[3] * e[1] + C[4] * e[2],
+                      factor * D.xy + C[2] * e[0] + C[4] * e[1] + C[5] * e[2]};
+      });
+      stress_to_tile<rows>(k);
+    });
+  });
+  sum_tiles(f);
+  mirror_.fold(f);
+}
+
+void ViscousOperator::linearise() {
   for_each_block(*arena_, grid_->point_blocks.size(), [&](std::size_t k) {
     for_points(k, [&](PointData& point) {
       const double two_eta = 2.0 * point.eta * point.volume_dt;
@@ -347,7 +382,7 @@ void ViscousOperator::linearise(bool picard) {
       C = {two_eta * (2.0 / 3.0), two_eta * (-1.0 / 3.0), 0.0,
            two_eta * (2.0 / 3.0), 0.0,                    two_eta * 0.5};
       const Deviator D(point.strain);
-      if (picard || !(D.norm > 0.0) || !(point.eta > 0.0)) return;
+      if (!(D.norm > 0.0) || !(point.eta > 0.0)) return;
       const Plane n{D.xx / D.norm, D.yy / D.norm, D.xy / D.norm};
       // the dual stress may not exceed the law's own: |w| <= 1
       const double bound = 2.0 * point.eta * D.norm;

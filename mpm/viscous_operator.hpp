@@ -65,11 +65,18 @@ class ViscousOperator {
   /// f ← Eᵀ Δt Σ V Bᵀ s with the law's own s = 2η(γ̇)D′ at the field v = E y [kg m/s per m].
   void impulse(const NodeVector& v, NodeVector& f);
 
+  /// Takes the state of the points after the last step, D_n and s_n, for the next linearise(). The
+  /// field that the points gave to the grid has been through the transfers, and where the law is
+  /// stiff its strain says little about the stress.
+  void state_of_points();
+  /// f ← Eᵀ Δt Σ V Bᵀ [s + C(Bv − D)], linear from the state of the last linearise(), v = E y.
+  void linear_impulse(const NodeVector& v, NodeVector& f);
+
   /// Takes Newton's tangent at the last field given to impulse(), in the primal-dual form of Chan,
   /// Golub & Mulet (1999): the stress is an unknown of its own, s = 2ηD′, so that
   ///   C = 2η[I − ½θ(w ⊗ n + n ⊗ w)],   n = D′/|D′|,  w = s/(2η|D′|),  θ = −d ln η/d ln γ̇,
   /// where s has not caught up with D′ yet. |w| is kept <= 1, so C is positive.
-  void linearise(bool picard = false);
+  void linearise();
 
   /// q ← Eᵀ Δt Σ V Bᵀ C B p for a field p = E y.
   void apply(const NodeVector& p, NodeVector& q);
@@ -83,18 +90,23 @@ class ViscousOperator {
   void take_stress_step(double a);
 
   const WallMirror& mirror() const { return mirror_; }
+  /// Node blocks that hold mass, in order; vectors stay 0 elsewhere.
+  const std::vector<std::size_t>& live() const { return live_; }
 
  private:
   /// Symmetric tensor in the plane: xx, yy, xy (strain: 2xy).
   using Plane = std::array<double, 3>;
-  struct PointData {
+  struct alignas(64) PointData {
+    // all that apply() reads, in three cache lines
     std::array<double, 16> weights;  ///< w, w d D⁻¹ in x, the same in y
     std::array<double, 6> tangent;   ///< Δt V C: xx·xx, xx·yy, xx·xy, yy·yy, yy·xy, xy·xy
-    Plane strain;                    ///< D [1/s]
-    Plane stress, stress_step;       ///< s (dual) and its change, zz = −xx − yy [Pa]
-    Plane load;                      ///< what goes to the tile, Δt V times a stress
-    double eta, thinning, volume_dt;
-    std::uint32_t place;  ///< of its stencil in the tile
+    double eta;                      ///< [Pa s]
+    std::uint32_t place;             ///< of its stencil in the tile
+    // and the rest
+    Plane strain;               ///< D [1/s]
+    Plane stress, stress_step;  ///< s (dual) and its change, zz = −xx − yy [Pa]
+    Plane load;                 ///< what goes to the tile, Δt V times a stress
+    double thinning, volume_dt;
   };
   struct BodyPoints {
     std::vector<PointData> data;  ///< by slot
@@ -106,9 +118,6 @@ class ViscousOperator {
 
   template <class K>
   void place_points(std::size_t block);
-  /// Strain of the points of a block under a field.
-  template <int rows>
-  void strain_of(std::size_t block, const VectorTile& tile, Plane PointData::*strain);
   template <int rows>
   void stress_to_tile(std::size_t block);
   void evaluate_law(std::size_t block);
@@ -131,6 +140,7 @@ class ViscousOperator {
   tbb::task_arena* arena_ = nullptr;
   Grid* grid_ = nullptr;
   WallMirror mirror_;
+  std::vector<std::size_t> live_;
   double dt_ = 0.0;
   std::vector<BodyPoints> bodies_;
   std::vector<VectorTile> tiles_;
