@@ -127,9 +127,11 @@ void read_step(TomlReader table, mpm::Scene& scene) {
       table.choice("viscosity", {mpm::viscosity_names.begin(), mpm::viscosity_names.end()},
                    static_cast<std::size_t>(scene.viscosity)));
   const auto tolerance =
-      table.optional_number({"viscosity_tolerance", "-",
+      table.optional_number({"viscosity_tolerance",
+                             "-",
                              "error of an implicit step's velocity over what its forces bring",
-                             Range{0.0, 0.1, true, false}, {}});
+                             Range{0.0, 0.1, true, false},
+                             {}});
   if (tolerance && scene.viscosity != mpm::Viscosity::implicit_solve)
     table.report("viscosity_tolerance", "only step.viscosity = \"implicit\" has a tolerance");
   scene.viscosity_tolerance = tolerance.value_or(scene.viscosity_tolerance);

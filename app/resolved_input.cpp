@@ -150,7 +150,8 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
       line("viscosity",
            toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
       (scene.viscosity == mpm::Viscosity::implicit_solve
-           ? line("viscosity_tolerance", number(scene.viscosity_tolerance), "of the velocity change")
+           ? line("viscosity_tolerance", number(scene.viscosity_tolerance),
+                  "of the velocity change")
            : "") +
       (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
                 : line("courant", number(scene.courant), "of the largest stable step"));

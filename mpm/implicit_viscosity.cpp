@@ -150,8 +150,8 @@ bool ImplicitViscosity::newton_step(const NodeVector& from, double share, int& i
 }
 
 void ImplicitViscosity::search_along_step() {
-  // The potential along the step is convex: its slope R·δ is negative at 0 and grows. Take the whole
-  // step unless that leads far beyond the minimum; then come back by the secant.
+  // The potential along the step is convex: its slope R·δ is negative at 0 and grows. Take the
+  // whole step unless that leads far beyond the minimum; then come back by the secant.
   const double slope_0 = dot(R_, step_);
   double a = 1.0;
   for (int it = 0; it < most_search_steps; ++it) {
@@ -225,6 +225,11 @@ ViscousEffect ImplicitViscosity::solve(Grid& grid, std::vector<PointSet>& bodies
     search_along_step();
   }
 
+  if (!effect.converged) {
+    effect.allowed = allowed(distance_from_start(v_));
+    effect.residual = residual_norm();
+  }
+
   const auto work = sums<2>([&](std::size_t k, std::size_t n) {
     const NodeBlock& nb = grid.node_blocks[k];
     const double vx = v_[k].x[n], vy = v_[k].y[n];
@@ -245,13 +250,14 @@ ViscousEffect ImplicitViscosity::solve(Grid& grid, std::vector<PointSet>& bodies
 void Simulation::Impl::solve_viscosity(double dt) {
   viscous_effect_ = {};
   if (scene.viscosity != Viscosity::implicit_solve) return;
-  viscous_effect_ = viscosity_.solve(grid, bodies, walls, scene.kernel, dt,
-                                     scene.viscosity_tolerance, arena);
+  viscous_effect_ =
+      viscosity_.solve(grid, bodies, walls, scene.kernel, dt, scene.viscosity_tolerance, arena);
   newton_iterations += viscous_effect_.newton_iterations;
   cg_iterations += viscous_effect_.cg_iterations;
   if (!viscous_effect_.converged)
     throw NumericalFailure(fmt::format(
-        "step {} at t = {:.6g} s: the implicit viscosity is still off by {:.3g} after {} Newton and "
+        "step {} at t = {:.6g} s: the implicit viscosity is still off by {:.3g} after {} Newton "
+        "and "
         "{} conjugate gradient iterations ({:.3g} allowed, of the norm of the step's velocity "
         "change); try a smaller courant or a larger step.viscosity_tolerance (solver)",
         steps, time, viscous_effect_.residual, viscous_effect_.newton_iterations,

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Viscous forces solved for at the end of the step, for laws whose stress is −pI + 2ηD′ (physics.md,
-/// MUI-3, NEW). The pressure acts explicitly, and with v* the velocity that it and gravity bring, the
-/// nodes' velocity v solves
+/// Viscous forces solved for at the end of the step, for laws whose stress is −pI + 2ηD′
+/// (physics.md, MUI-3, NEW). The pressure acts explicitly, and with v* the velocity that it and
+/// gravity bring, the nodes' velocity v solves
 ///   M (v − v*) + Δt Σ V Bᵀ 2η(γ̇(v)) D′(v) = 0
 /// among the fields that the walls admit: the minimum of ½|v − v*|²_M + ΔtΣVφ(γ̇), φ′ = τ, which is
 /// convex as τ = ηγ̇ grows with γ̇. Newton's method on it (viscous_operator.hpp), each step by
@@ -21,8 +21,8 @@ namespace repose::mpm {
 struct ViscousEffect {
   bool converged = true;
   double kinetic = 0.0;  ///< change of ½Σmv² by the viscous impulse [J]
-  /// −½ΔtΣF·(v − u) [J]: by how much the work of the viscous impulse on the mean velocity of the step
-  /// exceeds that on the velocity at its end, which the points sum up.
+  /// −½ΔtΣF·(v − u) [J]: by how much the work of the viscous impulse on the mean velocity of the
+  /// step exceeds that on the velocity at its end, which the points sum up.
   double half_jump_work = 0.0;
   double residual = 0.0, allowed = 0.0;  ///< |R|_{M⁻¹} at the end and the bound on it [√J]
   int newton_iterations = 0, cg_iterations = 0;
@@ -52,8 +52,8 @@ class ImplicitViscosity {
   void residual(NodeVector& v, NodeVector& R);
   /// Largest residual allowed where the velocity has changed by `change` from v* [√J].
   double allowed(double change) const { return tolerance_ * (kick_ + change) + round_off_; }
-  /// (M + ΔtK) step = −R, starting from the field `from`, until its residual is `share` of R or half
-  /// of what is allowed; false after too many iterations.
+  /// (M + ΔtK) step = −R, starting from the field `from`, until its residual is `share` of R or
+  /// half of what is allowed; false after too many iterations.
   bool newton_step(const NodeVector& from, double share, int& iterations);
   /// Takes as much of the step as brings the potential down.
   void search_along_step();

@@ -43,15 +43,16 @@ struct Range {
 
 struct PointSet {
   std::shared_ptr<const Material> material;
-  double rho_0 = 0.0;          ///< reference density for solid depths [kg/m³]
-  std::size_t count = 0;       ///< points (without padding)
+  double rho_0 = 0.0;     ///< reference density for solid depths [kg/m³]
+  std::size_t count = 0;  ///< points (without padding)
   /// STATE + state variables of the law + stress of the explicit forces + own affine field
   std::size_t fields = STATE;
   /// First of the four fields (xx, xy, yx, yy) of the affine velocity that goes to the grid: LXX,
   /// or one behind the state where it is kept apart from the velocity gradient.
   std::size_t affine = LXX;
-  /// The fields (xx, yy, xy) whose stress gives the explicit forces: the whole stress, or two fields
-  /// behind the state, −p and 0, where the viscous part acts implicitly (implicit_viscosity.hpp).
+  /// The fields (xx, yy, xy) whose stress gives the explicit forces: the whole stress, or two
+  /// fields behind the state, −p and 0, where the viscous part acts implicitly
+  /// (implicit_viscosity.hpp).
   std::array<std::size_t, 3> force_stress{SXX, SYY, SXY};
   std::array<std::vector<double>, STATE + max_state + split_fields + affine_fields> field;
   std::vector<std::int64_t> id;  ///< order of creation, the point's name for life; −1 in padding

@@ -324,14 +324,8 @@ Simulation::Counters Simulation::counters() const {
   for (const PointSet& points : s.bodies)
     bytes += static_cast<double>(points.slots() *
                                  (points.fields * sizeof(double) + sizeof(std::int64_t)));
-  return {s.steps > 0 ? s.dt_min : 0.0,
-          s.dt_max,
-          s.wall_corrections,
-          s.sorts,
-          s.newton_iterations,
-          s.cg_iterations,
-          bytes / 1e6,
-          s.threads};
+  return {s.steps > 0 ? s.dt_min : 0.0, s.dt_max,        s.wall_corrections, s.sorts,
+          s.newton_iterations,          s.cg_iterations, bytes / 1e6,        s.threads};
 }
 
 std::string Simulation::Impl::describe(const PointSet& points, std::size_t body,

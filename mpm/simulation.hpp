@@ -92,7 +92,7 @@ class Simulation {
     std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
     std::int64_t sorts;
     std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
-    double memory_MB;  ///< of points and grid
+    double memory_MB;                               ///< of points and grid
     int threads;
   };
   Counters counters() const;

@@ -23,11 +23,11 @@ class Simulation::Impl {
   // --- the algorithm box, one function per stage ---
   void sort_if_needed();
   double choose_step(double stop_at) const;
-  void points_to_grid();           ///< P2G: mass, momentum, internal force of every block's tile
-  void update_grid(double dt);     ///< sum tiles, accelerate nodes
+  void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
+  void update_grid(double dt);      ///< sum tiles, accelerate nodes
   void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
-  void grid_to_points(double dt);  ///< G2P, move, update stress; throws NumericalFailure
-  void close_ledger();             ///< kinetic energies before and after; throws NumericalFailure
+  void grid_to_points(double dt);   ///< G2P, move, update stress; throws NumericalFailure
+  void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
 
   SeriesRow diagnostics();
   /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.

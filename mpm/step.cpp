@@ -362,7 +362,8 @@ void Simulation::Impl::close_ledger() {
   // at the whole step, with half a kick on both sides (ledger.hpp)
   const double points_to_nodes =
       (ledger.kinetic + 0.5 * last_dt * ledger.power) - (nodes.before + 0.5 * nodes.impulse_work);
-  const double nodes_to_points = nodes.after + wall_effect_.kinetic_after + viscous_effect_.kinetic - kinetic;
+  const double nodes_to_points =
+      nodes.after + wall_effect_.kinetic_after + viscous_effect_.kinetic - kinetic;
   const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
   const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
   ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;

@@ -151,8 +151,8 @@ void ViscousOperator::place_points(std::size_t block) {
       (wx.w * wx.d * Row(slope)).store_unaligned(point.weights.data() + 4);
       wy.w.store_unaligned(point.weights.data() + 8);
       (wy.w * wy.d * Row(slope)).store_unaligned(point.weights.data() + 12);
-      point.place = static_cast<std::uint32_t>((wy.base - origin[1]) * tile_stride + wx.base -
-                                               origin[0]);
+      point.place =
+          static_cast<std::uint32_t>((wy.base - origin[1]) * tile_stride + wx.base - origin[0]);
       const double mean_stress = points[points.force_stress[0]][s];
       point.stress = {points[SXX][s] - mean_stress, points[SYY][s] - mean_stress, points[SXY][s]};
       point.volume_dt = dt_ * points[MASS][s] / points[RHO][s];
@@ -379,8 +379,8 @@ void ViscousOperator::linearise() {
     for_points(k, [&](PointData& point) {
       const double two_eta = 2.0 * point.eta * point.volume_dt;
       std::array<double, 6>& C = point.tangent;
-      C = {two_eta * (2.0 / 3.0), two_eta * (-1.0 / 3.0), 0.0,
-           two_eta * (2.0 / 3.0), 0.0,                    two_eta * 0.5};
+      C = {two_eta * (2.0 / 3.0), two_eta * (-1.0 / 3.0), 0.0, two_eta * (2.0 / 3.0), 0.0,
+           two_eta * 0.5};
       const Deviator D(point.strain);
       if (!(D.norm > 0.0) || !(point.eta > 0.0)) return;
       const Plane n{D.xx / D.norm, D.yy / D.norm, D.xy / D.norm};

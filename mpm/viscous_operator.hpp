@@ -21,8 +21,9 @@ struct NodeField {
 /// One per node block of the grid, in its order.
 using NodeVector = std::vector<NodeField>;
 
-/// The velocity fields that slip and no-slip walls admit (walls.hpp): v = E y, where y are the values
-/// at the nodes that are free, and E gives ghosts their mirrored values and zero to what is held.
+/// The velocity fields that slip and no-slip walls admit (walls.hpp): v = E y, where y are the
+/// values at the nodes that are free, and E gives ghosts their mirrored values and zero to what is
+/// held.
 class WallMirror {
  public:
   void connect(Grid& grid, const Walls& walls);
@@ -129,8 +130,7 @@ class ViscousOperator {
     for (BodyPoints& body : bodies_) {
       if (body.points == nullptr) continue;
       const Range& range = grid_->point_blocks[block].range[body_index(body)];
-      for (std::size_t s = range.begin; s < range.begin + range.count; ++s)
-        f(body.data[s]);
+      for (std::size_t s = range.begin; s < range.begin + range.count; ++s) f(body.data[s]);
     }
   }
   std::size_t body_index(const BodyPoints& body) const {
