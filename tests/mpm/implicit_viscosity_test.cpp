@@ -3,6 +3,7 @@
 #include "mpm/implicit_viscosity.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "tests/mpm/layer.hpp"
 
@@ -151,6 +152,8 @@ TEST(ImplicitStep, StoresTheStressOfItsVelocity) {
 }
 
 TEST(ImplicitStep, SameBitsForAnyThreadsAndAfterResuming) {
+  // four real threads, also where there are fewer cores
+  const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
   for (const Kernel kernel : {Kernel::cubic, Kernel::quadratic}) {
     const Scene scene =
         three_bodies(kernel, kernel == Kernel::cubic ? Transfer::relaxed : Transfer::apic);
