@@ -127,6 +127,18 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   scene.pressure_averaging =
       table.number({"pressure_averaging", "-", "of neighbouring points, per unit of shear strain",
                     not_negative, scene.pressure_averaging});
+  scene.viscosity = static_cast<mpm::Viscosity>(
+      table.choice("viscosity", {mpm::viscosity_names.begin(), mpm::viscosity_names.end()},
+                   static_cast<std::size_t>(scene.viscosity)));
+  const auto tolerance =
+      table.optional_number({"viscosity_tolerance",
+                             "-",
+                             "error of an implicit step's velocity over what its forces bring",
+                             Range{0.0, 0.1, true, false},
+                             {}});
+  if (tolerance && scene.viscosity != mpm::Viscosity::implicit_solve)
+    table.report("viscosity_tolerance", "only step.viscosity = \"implicit\" has a tolerance");
+  scene.viscosity_tolerance = tolerance.value_or(scene.viscosity_tolerance);
   scene.courant = table.number(
       {"courant", "-", "share of the stable step", Range{0.0, 1.0, true, false}, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});

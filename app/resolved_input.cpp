@@ -146,6 +146,12 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
            ? line("relaxation_time",
                   number(scene.relaxation_time.value_or(mpm::default_relaxation_time(scene))), "s")
            : "") +
+      line("viscosity",
+           toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
+      (scene.viscosity == mpm::Viscosity::implicit_solve
+           ? line("viscosity_tolerance", number(scene.viscosity_tolerance),
+                  "of the velocity change")
+           : "") +
       (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
                 : line("courant", number(scene.courant), "of the largest stable step"));
   out += "\n[output]\n" + line("frame_interval", number(scene.frame_interval), "s, 0 for none") +

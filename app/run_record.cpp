@@ -190,6 +190,10 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["peak_memory_MB"] = spent.peak_memory_MB;
   s["wall_corrections"] = counters.wall_corrections;
   s["sorts"] = counters.sorts;
+  if (simulation.scene().viscosity == mpm::Viscosity::implicit_solve) {
+    s["newton_iterations"] = counters.newton_iterations;
+    s["cg_iterations"] = counters.cg_iterations;
+  }
   s["sessions"] = record.sessions;
   s["warnings"] = facts.warnings;
   s["input"] = to_json(facts.input);

@@ -33,6 +33,10 @@ void append(PointSet& points, double x, double y, const Body& body, const Initia
   points.field[RHO].push_back(at.density);
   points.field[MASS].push_back(at.density * area);
   for (std::size_t k = 0; k < at.state.size(); ++k) points.field[STATE + k].push_back(at.state[k]);
+  if (points.splits_stress()) {
+    points.field[points.force_stress[0]].push_back(mean(at.stress));
+    points.field[points.force_stress[2]].push_back(0.0);
+  }
   if (points.affine != LXX)
     for (std::size_t k = 0; k < affine_fields; ++k)
       points.field[points.affine + k].push_back(points.field[LXX + k].back());
@@ -63,6 +67,10 @@ PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
   points.material =
       within("law", [&] { return std::shared_ptr<const Material>(make_material(body.law)); });
   points.fields = STATE + points.material->law().state.size();
+  if (scene.viscosity == Viscosity::implicit_solve && !points.material->law().has_stress_memory) {
+    points.force_stress = {points.fields, points.fields, points.fields + 1};
+    points.fields += split_fields;
+  }
   if (scene.transfer == Transfer::relaxed) {
     points.affine = points.fields;
     points.fields += affine_fields;

@@ -58,6 +58,8 @@ void check_numbers(const Scene& scene) {
                      "points_per_cell = " + std::to_string(scene.points_per_cell) +
                          " must be a square number from 1 to 100: 1, 4, 9, 16, ...");
   require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
+  require(scene.viscosity_tolerance, {0.0, 0.1, true, false}, "step.viscosity_tolerance",
+          "viscosity_tolerance");
   require(scene.courant, {0.0, 1.0, true, false}, "step.courant", "courant");
   if (scene.dt) require(*scene.dt, positive, "step.dt", "dt");
   require(scene.frame_interval, not_negative, "output.frame_interval", "frame_interval");
@@ -216,6 +218,26 @@ void check_overlap(const Scene& scene) {
     }
 }
 
+/// An implicit viscosity has something to solve for, among fields that its walls admit.
+void check_viscosity(const Scene& scene) {
+  if (scene.viscosity == Viscosity::explicit_force) return;
+  if (std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                  [](const Body& body) { return find_law(body.law).has_stress_memory; }))
+    throw InputError(
+        "step.viscosity",
+        "viscosity = \"implicit\" needs a body whose law is a viscosity: newtonian, or "
+        "mu_i with form = \"regularised\"");
+  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
+                                  {scene.left, "domain.left"},
+                                  {scene.right, "domain.right"},
+                                  {scene.top, "domain.top"}})
+    if (wall.kind == Wall::Kind::friction)
+      throw InputError(key,
+                       "a wall with friction does not go with step.viscosity = \"implicit\": its "
+                       "limit on the shear is not part of the solve; \"no_slip\", \"slip\" and "
+                       "\"open\" do");
+}
+
 /// What the material says to the state at the base of a lithostatic body.
 InitialPoint lithostatic_base(const Scene& scene, const Body& body, const Material& material) {
   const InitialConditions& given = body.initial;
@@ -281,6 +303,7 @@ void validate(const Scene& scene) {
   check_geometry(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+  check_viscosity(scene);
 }
 
 }  // namespace repose::mpm

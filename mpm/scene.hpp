@@ -60,6 +60,14 @@ constexpr std::string_view name_of(Transfer transfer) {
   return transfer_names[static_cast<std::size_t>(transfer)];
 }
 
+/// How the viscous stress of laws without stress memory acts.
+enum class Viscosity {
+  explicit_force,  ///< as a force of the stress from the last step; limits the step to 0.9 ρh²/4η
+  implicit_solve,  ///< solved for at the end of the step (implicit_viscosity.hpp); no limit
+};
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 2> viscosity_names{"explicit", "implicit"};
+
 struct Scene {
   std::string name;
   double end_time = 0.0;  ///< [s]
@@ -83,6 +91,11 @@ struct Scene {
   /// c: the pressure noise of the points decays as e^{−cγ} in shear γ [-]; 0: no averaging. Of the
   /// order of K/(ρ g H). See pressure_averaging.hpp.
   double pressure_averaging = 0.0;
+
+  Viscosity viscosity = Viscosity::explicit_force;
+  /// Largest error of an implicit step's velocity, over the velocity that its forces bring
+  /// (root mean square by mass); implicit_viscosity.hpp says what it bounds.
+  double viscosity_tolerance = 1e-3;
 
   double courant = 0.4;      ///< Δt = courant · h/(c + |v|), if dt is absent
   std::optional<double> dt;  ///< fixed step [s]

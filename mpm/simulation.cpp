@@ -74,7 +74,7 @@ Signals Simulation::Impl::initial_signals() const {
     modulus.resize(zero.size());
     Batch batch = copy.batch(all);
     copy.material->modulus(batch, modulus.data());
-    if (!copy.material->law().has_stress_memory) {
+    if (!copy.material->law().has_stress_memory && !copy.splits_stress()) {
       batch.dt = 1.0;
       batch.strain.fill(zero.data());
       batch.viscosity = viscosity.data();
@@ -100,8 +100,10 @@ double Simulation::Impl::initial_power() const {
 }
 
 double Simulation::Impl::power_of(const PointSet& points, std::size_t s) const {
-  const double stress_power = points[SXX][s] * points[LXX][s] + points[SYY][s] * points[LYY][s] +
-                              points[SXY][s] * (points[LXY][s] + points[LYX][s]);
+  const auto& stress = points.force_stress;
+  const double stress_power = points[stress[0]][s] * points[LXX][s] +
+                              points[stress[1]][s] * points[LYY][s] +
+                              points[stress[2]][s] * (points[LXY][s] + points[LYX][s]);
   return points[MASS][s] *
          (gravity[0] * points[VX][s] + gravity[1] * points[VY][s] - stress_power / points[RHO][s]);
 }
@@ -334,8 +336,8 @@ Simulation::Counters Simulation::counters() const {
   for (const PointSet& points : s.bodies)
     bytes += static_cast<double>(points.slots() *
                                  (points.fields * sizeof(double) + sizeof(std::int64_t)));
-  return {
-      s.steps > 0 ? s.dt_min : 0.0, s.dt_max, s.wall_corrections, s.sorts, bytes / 1e6, s.threads};
+  return {s.steps > 0 ? s.dt_min : 0.0, s.dt_max,        s.wall_corrections, s.sorts,
+          s.newton_iterations,          s.cg_iterations, bytes / 1e6,        s.threads};
 }
 
 std::string Simulation::Impl::describe(const PointSet& points, std::size_t body,

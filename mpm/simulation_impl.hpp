@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include "mpm/grid.hpp"
+#include "mpm/implicit_viscosity.hpp"
 #include "mpm/ledger.hpp"
 #include "mpm/simulation.hpp"
 #include "mpm/step_size.hpp"
@@ -22,10 +23,11 @@ class Simulation::Impl {
   // --- the algorithm box, one function per stage ---
   void sort_if_needed();
   double choose_step(double stop_at) const;
-  void points_to_grid();           ///< P2G: mass, momentum, internal force of every block's tile
-  void update_grid(double dt);     ///< sum tiles, accelerate nodes
-  void grid_to_points(double dt);  ///< G2P, move, update stress, P2G of the next step
-  void close_ledger();             ///< kinetic energies before and after; throws NumericalFailure
+  void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
+  void update_grid(double dt);      ///< sum tiles, accelerate nodes
+  void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
+  void grid_to_points(double dt);   ///< G2P, move, update stress, P2G of the next step
+  void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
 
   SeriesRow diagnostics();
   /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.
@@ -54,6 +56,7 @@ class Simulation::Impl {
   bool tiles_are_current = false;  ///< the tiles hold the points as they are
   std::int64_t sorts = 0;
   std::int64_t wall_corrections = 0;
+  std::int64_t newton_iterations = 0, cg_iterations = 0;  ///< of the implicit viscosity
   double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
   double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
   double first_dt = 0.0;
@@ -104,6 +107,8 @@ class Simulation::Impl {
   };
   std::vector<NodeSums> node_sums_;
   WallEffect wall_effect_;
+  ImplicitViscosity viscosity_;
+  ViscousEffect viscous_effect_;
 };
 
 }  // namespace repose::mpm

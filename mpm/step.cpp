@@ -1,49 +1,14 @@
 /// The explicit step (APIC with moving-least-squares forces), stage by stage.
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "mpm/block_loops.hpp"
 #include "mpm/pressure_averaging.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/transfer.hpp"
 
 namespace repose::mpm {
 namespace {
-
-/// Calls f(k) for k in [0, n) on the arena's threads; f must only write what belongs to k.
-template <class F>
-void for_each_block(tbb::task_arena& arena, std::size_t n, F&& f) {
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](const auto& part) {
-      for (std::size_t k = part.begin(); k != part.end(); ++k) f(k);
-    });
-  });
-}
-
-std::array<int, 2> tile_origin(const PointBlock& pb) {
-  return {Grid::first_x(pb.bx) - tile_margin_x, Grid::first_y(pb.by) - tile_margin_y};
-}
-
-/// Calls f(node of the block, entry of the tile, columns) for the rows that a tile and a node block
-/// share, `columns` (8 or 4) being known to the compiler. dx, dy = tile's block − node block.
-template <class F>
-void for_each_shared_row(int dx, int dy, F&& f) {
-  const int begin = std::max(0, dy * block_ny - tile_margin_y);
-  const int end = std::min(block_ny, dy * block_ny + tile_rows - tile_margin_y);
-  for (int j = begin; j < end; ++j) {
-    const auto node = static_cast<std::size_t>(j * block_nx);
-    const auto entry = static_cast<std::size_t>((j + tile_margin_y - dy * block_ny) * tile_stride);
-    using Four = std::integral_constant<std::size_t, tile_margin_x>;
-    using Eight = std::integral_constant<std::size_t, block_nx>;
-    if (dx == 0)
-      f(node, entry + tile_margin_x, Eight{});
-    else if (dx < 0)
-      f(node, entry + tile_margin_x + block_nx, Four{});
-    else
-      f(node + block_nx - tile_margin_x, entry, Four{});
-  }
-}
 
 /// Calls f with the kernel's type and with a and b as constants, all chosen at run time.
 template <class F>
@@ -93,6 +58,7 @@ void Simulation::Impl::step(double stop_at) {
   if (!tiles_are_current) points_to_grid();
   update_grid(dt);
   wall_effect_ = apply_walls(grid, walls);
+  solve_viscosity(dt);
   grid_to_points(dt);
   last_dt = dt;
   dt_min = std::min(dt_min, dt);
@@ -351,7 +317,8 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   batch.spin = spin;
   batch.work = work;
   batch.modulus = modulus;
-  batch.viscosity = points.material->law().has_stress_memory ? nullptr : viscosity;
+  const bool viscous = !points.material->law().has_stress_memory && !points.splits_stress();
+  batch.viscosity = viscous ? viscosity : nullptr;
   double* const pressure_before = viscosity + n;
   if (averages())
     add_averaging_strain(*points.material, batch, scene.pressure_averaging, motion.elastic,
@@ -365,6 +332,7 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
         "{:.6g} in {:.3g} s",
         describe(points, body, range.begin + k), e_xx[k], e_yy[k], e_xy[k], dt);
   }
+  if (points.splits_stress()) split_stress(points, range, batch);
   // A point alone in its stencil has the density m Σw²/h² (Σw² = 0.21 to 0.25, cubic; more,
   // quadratic); looser than that the grid cannot tell, and spray would dilate without end.
   const Pack per_cell(0.2 / (grid.h() * grid.h()));
@@ -395,7 +363,11 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
     kinetic = kinetic + half * m * (vx * vx + vy * vy);
     // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
     work = work + m * inv_rho * (one - half * strain_v) * Pack::load_aligned(batch.work + k);
-    const Pack stress_power = at(SXX) * at(LXX) + at(SYY) * at(LYY) + at(SXY) * (at(LXY) + at(LYX));
+    const auto force_stress = [&](std::size_t c) {
+      return Pack::load_aligned(points[points.force_stress[c]] + range.begin + k);
+    };
+    const Pack stress_power = force_stress(0) * at(LXX) + force_stress(1) * at(LYY) +
+                              force_stress(2) * (at(LXY) + at(LYX));
     power = power + m * (gx * moving_x + gy * moving_y - stress_power * inv_rho);
     const Pack v2 = moving_x * moving_x + moving_y * moving_y;
     speed2 = max_of(speed2, v2);
@@ -435,14 +407,15 @@ void Simulation::Impl::close_ledger() {
   // at the whole step, with half a kick on both sides (ledger.hpp)
   const double points_to_nodes =
       (ledger.kinetic + 0.5 * last_dt * ledger.power) - (nodes.before + 0.5 * nodes.impulse_work);
-  const double nodes_to_points = nodes.after + wall_effect_.kinetic_after - kinetic;
+  const double nodes_to_points =
+      nodes.after + wall_effect_.kinetic_after + viscous_effect_.kinetic - kinetic;
   const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
   const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
   ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
   ledger.kinetic = kinetic;
   ledger.power = power;
-  ledger.stress_work += work;
+  ledger.stress_work += work + viscous_effect_.half_jump_work;
   drift += now.speed * last_dt;
   if (scene.dt) {
     fixed_step_excess = std::max(fixed_step_excess, last_dt * now.signal / grid.h());

@@ -125,9 +125,9 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
       (mh * at(a + 2)).store_aligned(c[C_YX]);
       (mh * at(a + 3)).store_aligned(c[C_YY]);
     }
-    (V * at(SXX)).store_aligned(c[C_FXX]);
-    (V * at(SXY)).store_aligned(c[C_FXY]);
-    (V * at(SYY)).store_aligned(c[C_FYY]);
+    (V * at(points.force_stress[0])).store_aligned(c[C_FXX]);
+    (V * at(points.force_stress[1])).store_aligned(c[C_FYY]);
+    (V * at(points.force_stress[2])).store_aligned(c[C_FXY]);
     const Pack x = at(X) * Pack(inv_h);
     const Pack y = at(Y) * Pack(inv_h);
     const Pack anchor_x = Kernel::anchor(x);

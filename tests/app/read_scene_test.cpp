@@ -235,6 +235,30 @@ TEST(ReadSceneErrors, relaxation_time_belongs_to_relaxed) {
             "\"relaxed\"; got the string \"relaxd\"; did you mean \"relaxed\"?");
 }
 
+TEST(ReadSceneErrors, implicit_viscosity_needs_a_viscosity_and_walls_it_can_hold) {
+  const std::string fluid =
+      replaced(granular, "name = \"mu_i\"", "name = \"mu_i\"\nform = \"regularised\"");
+  const std::string implicit = "[step]\nviscosity = \"implicit\"\n";
+  EXPECT_EQ(problems(fluid + implicit + "viscosity_tolerance = 1e-4\n"), "");
+  EXPECT_EQ(
+      problems(granular + implicit),
+      "s.toml:19:1: viscosity = \"implicit\" needs a body whose law is a viscosity: newtonian, "
+      "or mu_i with form = \"regularised\"");
+  EXPECT_EQ(
+      problems(replaced(fluid, "0.5625]\n", "0.5625]\nfloor = { friction = 0.4 }\n") + implicit),
+      "s.toml:5:1: a wall with friction does not go with step.viscosity = \"implicit\": its "
+      "limit on the shear is not part of the solve; \"no_slip\", \"slip\" and \"open\" do");
+  EXPECT_EQ(problems(fluid + "[step]\nviscosity = \"implicite\"\n"),
+            "s.toml:20:1: step.viscosity must be one of \"explicit\", \"implicit\"; got the string "
+            "\"implicite\"; did you mean \"implicit\"?");
+  EXPECT_EQ(problems(fluid + "[step]\nviscosity_tolerance = 1e-4\n"),
+            "s.toml:20:1: only step.viscosity = \"implicit\" has a tolerance");
+  EXPECT_EQ(
+      problems(fluid + implicit + "viscosity_tolerance = 0.5\n"),
+      "s.toml:21:1: step.viscosity_tolerance = 0.5 is out of range: error of an implicit step's "
+      "velocity over what its forces bring must be a number in (0, 0.1]");
+}
+
 TEST(ReadSceneErrors, courant_or_dt) {
   EXPECT_EQ(problems(granular + "[step]\ncourant = 0.3\ndt = 1e-5\n"),
             "s.toml:20:1: give either step.courant or step.dt: a fixed step leaves no choice");
