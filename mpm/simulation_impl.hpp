@@ -15,7 +15,7 @@ namespace repose::mpm {
 
 class Simulation::Impl {
  public:
-  Impl(const Scene& scene, int threads);
+  Impl(const Scene& scene, const Prescribed& prescribed, int threads);
 
   void step(double stop_at);
 
@@ -43,6 +43,9 @@ class Simulation::Impl {
   Grid grid;
   mutable tbb::task_arena arena;
   int threads;
+
+  Prescribed prescribed;
+  std::vector<double> start_x, start_y;  ///< by point id, if an acceleration is prescribed [m]
 
   double time = 0.0;
   std::int64_t steps = 0;
@@ -73,6 +76,9 @@ class Simulation::Impl {
   };
   template <class Kernel, bool affine>
   void transfer_to_tile(std::size_t block);
+  template <class Kernel>
+  void prescribed_force_to_tile(const PointSet& points, const Range& range,
+                                std::array<int, 2> origin, Tile& tile) const;
   template <class Kernel, bool keeps>
   void advance_block(std::size_t block, double dt, BlockSums& sums);
   /// Adds a range's energies, work, power and signals after its update.

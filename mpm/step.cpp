@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "mpm/body_force.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/transfer.hpp"
 
@@ -124,8 +125,29 @@ void Simulation::Impl::transfer_to_tile(std::size_t block) {
   const PointBlock& pb = grid.point_blocks[block];
   Tile& tile = grid.tiles[block];
   for (auto& channel : tile) channel.fill(0.0);
-  for (std::size_t b = 0; b < bodies.size(); ++b)
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
     points_to_tile<Kernel, affine>(bodies[b], pb.range[b], grid.h(), tile_origin(pb), tile);
+    if (prescribed.acceleration)
+      prescribed_force_to_tile<Kernel>(bodies[b], pb.range[b], tile_origin(pb), tile);
+  }
+}
+
+template <class Kernel>
+void Simulation::Impl::prescribed_force_to_tile(const PointSet& points, const Range& range,
+                                                std::array<int, 2> origin, Tile& tile) const {
+  if (range.count == 0) return;
+  const std::size_t n = range.count;
+  static thread_local std::vector<double> scratch;
+  scratch.assign(4 * n, 0.0);
+  const std::span<double> start[2] = {{scratch.data(), n}, {scratch.data() + n, n}};
+  const std::span<double> a[2] = {{scratch.data() + 2 * n, n}, {scratch.data() + 3 * n, n}};
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto name = static_cast<std::size_t>(points.id[range.begin + k]);
+    start[0][k] = start_x[name];
+    start[1][k] = start_y[name];
+  }
+  prescribed.acceleration(time, start[0], start[1], a[0], a[1]);
+  body_force_to_tile<Kernel>(points, range, a[0], a[1], grid.h(), origin, tile);
 }
 
 void Simulation::Impl::points_to_grid() {
