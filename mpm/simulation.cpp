@@ -79,7 +79,11 @@ Simulation::Impl::Impl(const Scene& given, const Prescribed& by_program, int thr
     for (std::size_t s = 0; s < points.slots(); ++s)
       if (points.id[s] >= 0) mass += points[MASS][s];
   highest_energy = ledger.start - mass * lowest + 1e-9 * mass * signals.signal * signals.signal;
-  if (prescribed.acceleration) highest_energy = HUGE_VAL;  // its work has no bound
+  // the work of these has no bound
+  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
+  if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
+      drags(walls.right) || drags(walls.floor) || drags(walls.top))
+    highest_energy = HUGE_VAL;
 }
 
 Signals Simulation::Impl::initial_signals() const {
@@ -133,7 +137,8 @@ void Simulation::Impl::remove_outflow() {
     for (std::size_t s = 0; s < points.slots(); ++s) {
       const double x = points[X][s];
       const double y = points[Y][s];
-      if (points.id[s] < 0 || (x >= 0.0 && x <= width && y >= 0.0 && y <= height)) continue;
+      const bool inside = walls.periodic() || (x >= 0.0 && x <= width);
+      if (points.id[s] < 0 || (inside && std::isfinite(x) && y >= 0.0 && y <= height)) continue;
       if (!std::isfinite(x) || !std::isfinite(y))  // no outflow, but a state saved after a failure
         throw NumericalFailure("step " + std::to_string(steps) +
                                " starts from a failed state: point " +

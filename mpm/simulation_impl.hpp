@@ -6,6 +6,7 @@
 
 #include "mpm/grid.hpp"
 #include "mpm/ledger.hpp"
+#include "mpm/periodic.hpp"
 #include "mpm/simulation.hpp"
 #include "mpm/step_size.hpp"
 #include "mpm/transfer.hpp"
@@ -95,11 +96,7 @@ class Simulation::Impl {
   std::string describe(const PointSet& points, std::size_t body, std::size_t slot) const;
 
   std::vector<BlockSums> block_sums_;
-  /// Kinetic energy of a block's nodes before and after forces, ΔtΣ(f + mg)·u.
-  struct NodeSums {
-    double before = 0.0, after = 0.0, impulse_work = 0.0;
-  };
-  std::vector<NodeSums> node_sums_;
+  std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
   WallEffect wall_effect_;
 };
 

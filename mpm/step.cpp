@@ -72,6 +72,7 @@ void Simulation::Impl::step(double stop_at) {
   const double dt = choose_step(stop_at);
   points_to_grid();
   update_grid(dt);
+  if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
   wall_effect_ = apply_walls(grid, walls);
   grid_to_points(dt);
   last_dt = dt;
@@ -86,6 +87,10 @@ void Simulation::Impl::sort_if_needed() {
   // a tile covers one cell around its block; keep a little in hand for round-off
   const double reach = 0.98 * grid.h();
   if (!must_sort && drift + 2.0 * signals.speed * last_dt < reach) return;
+  if (walls.periodic()) {
+    const double width = grid.h() * grid.nx();
+    for (PointSet& points : bodies) ledger.outflow -= wrap_points(points, width, gravity[0]);
+  }
   remove_outflow();
   grid.sort(bodies);
   drift = 0.0;
@@ -359,6 +364,7 @@ void Simulation::Impl::move(PointSet& points, const Range& range, const Motion& 
   const double width = grid.h() * grid.nx();
   const double height = grid.h() * grid.ny();
   const auto keep = [&](double& x, double lower, double upper, const Wall& low, const Wall& high) {
+    if (low.kind == Wall::Kind::periodic) return;  // wrapped when points are sorted
     if (x < lower + hair) {
       if (low.kind == Wall::Kind::open) {
         sums.outflow = sums.outflow || x < lower;
@@ -414,6 +420,7 @@ void Simulation::Impl::close_ledger() {
   const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
   ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
+  ledger.wall_loss -= wall_effect_.drag_after - kept * wall_effect_.drag_before;
   ledger.kinetic = kinetic;
   ledger.power = power;
   ledger.stress_work += work;
