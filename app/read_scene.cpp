@@ -41,12 +41,16 @@ void read_general(TomlReader table, mpm::Scene& scene) {
 
 Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   if (const toml::node* node = table.get(key); node != nullptr && node->is_table()) {
+    TomlReader given = table.table(key);
+    if (given.has("speed"))
+      return {Wall::Kind::no_slip, 0.0,
+              given.number({"speed", "m/s", "of the wall along itself", {}, {}})};
     Wall wall{Wall::Kind::friction};
-    wall.friction =
-        table.table(key).number({"friction", "-", "Coulomb coefficient", not_negative, {}});
+    wall.friction = given.number({"friction", "-", "Coulomb coefficient", not_negative, {}});
     return wall;
   }
-  constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open};
+  constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open,
+                             Wall::Kind::periodic};
   table.expect(key);
   if (!table.has(key)) return fallback;
   const toml::node& node = *table.get(key);
@@ -57,12 +61,14 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
     return fallback;
   }
   if (!node.is_string()) {
-    table.report(key, fmt::format("{} must be one of \"no_slip\", \"slip\", \"open\", or a table "
-                                  "such as {{ friction = 0.4 }}; got {}",
-                                  table.path_of(key), describe(node)));
+    table.report(key,
+                 fmt::format("{} must be one of \"no_slip\", \"slip\", \"open\", \"periodic\", "
+                             "or a table such as {{ friction = 0.4 }} or {{ speed = 0.1 }}; "
+                             "got {}",
+                             table.path_of(key), describe(node)));
     return fallback;
   }
-  return {kinds[table.choice(key, {"no_slip", "slip", "open"}, 0)]};
+  return {kinds[table.choice(key, {"no_slip", "slip", "open", "periodic"}, 0)]};
 }
 
 void read_domain(TomlReader table, mpm::Scene& scene) {
@@ -71,7 +77,8 @@ void read_domain(TomlReader table, mpm::Scene& scene) {
   const Wall walls = read_wall(table, "walls", scene.left);
   scene.left = read_wall(table, "left", walls);
   scene.right = read_wall(table, "right", walls);
-  scene.top = read_wall(table, "top", walls);
+  // periodic walls are those across the flow; the top is then left as it is by default
+  scene.top = read_wall(table, "top", walls.kind == Wall::Kind::periodic ? scene.top : walls);
 }
 
 void read_initial(TomlReader table, mpm::Body& body) {
@@ -94,9 +101,16 @@ void read_initial(TomlReader table, mpm::Body& body) {
 mpm::Body read_body(TomlReader table, std::size_t position) {
   mpm::Body body;
   body.name = table.text("name", "a name for messages", fmt::format("body{}", position));
-  table.choice("shape", {"box"}, 0);
-  body.origin = table.pair({"origin", "m", "lower left corner", {}, {}}, std::array{0.0, 0.0});
-  body.size = table.pair({"size", "m", "width and height", positive, {}});
+  if (table.choice("shape", {"box", "disc"}, 0) == 0) {
+    body.origin = table.pair({"origin", "m", "lower left corner", {}, {}}, std::array{0.0, 0.0});
+    body.size = table.pair({"size", "m", "width and height", positive, {}});
+  } else {
+    mpm::Disc disc;
+    disc.centre = table.pair({"centre", "m", "of the disc", {}, {}});
+    disc.radius = table.number({"radius", "m", "of the disc", positive, {}});
+    disc.hole = table.number({"hole", "m", "radius of the disc's hole", not_negative, 0.0});
+    set_disc(body, disc);
+  }
   body.velocity = table.pair({"velocity", "m/s", "initial velocity", {}, {}}, std::array{0.0, 0.0});
   body.spin = table.number({"spin", "rad/s", "initial angular velocity", {}, 0.0});
   read_initial(table.table("initial"), body);

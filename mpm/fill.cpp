@@ -44,6 +44,13 @@ void append(PointSet& points, double x, double y, const Body& body, const Initia
   ++points.count;
 }
 
+/// In the box, or in the disc and not in its hole.
+bool within_shape(const Body& body, double x, double y) {
+  if (!body.disc) return true;
+  const double r = std::hypot(x - body.disc->centre[0], y - body.disc->centre[1]);
+  return r >= body.disc->hole && r < body.disc->radius;
+}
+
 }  // namespace
 
 double overburden(const Material& material, double ocr, double K0, double g, double z, int steps) {
@@ -104,9 +111,11 @@ PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
       });
       at = initial(here);
     }
-    for (std::int64_t i = 0; i < nx; ++i)
-      append(points, body.origin[0] + (static_cast<double>(i) + 0.5) * dx, y, body, at, dx * dy,
-             first_id + j * nx + i);
+    for (std::int64_t i = 0; i < nx; ++i) {
+      const double x = body.origin[0] + (static_cast<double>(i) + 0.5) * dx;
+      if (!within_shape(body, x, y)) continue;
+      append(points, x, y, body, at, dx * dy, first_id + static_cast<std::int64_t>(points.count));
+    }
   }
   // solid depths are measured at the loosest density the law knows by name, else as filled
   points.rho_0 = points.field[RHO].empty() ? 0.0 : points.field[RHO].back();

@@ -8,9 +8,10 @@
 namespace repose::mpm {
 namespace {
 
-constexpr double max_points = 1e8;  ///< about 25 GB
-constexpr double max_cells = 1e9;   ///< of the box: half a gigabyte of tables
-constexpr double min_cells = 3;     ///< across the box
+constexpr double max_points = 1e8;        ///< about 25 GB
+constexpr double max_cells = 1e9;         ///< of the box: half a gigabyte of tables
+constexpr double min_cells = 3;           ///< across the box
+constexpr double min_periodic_cells = 5;  ///< no node is its own image
 constexpr double max_frames = 1e6;
 constexpr double max_rows = 1e7;
 constexpr double tolerance = 1e-6;  ///< of a cell or a point spacing
@@ -41,6 +42,21 @@ void require(double x, const Range& range, const char* key, const char* what) {
       key, std::string(what) + " = " + number(x) + " is out of range: must be " + to_string(range));
 }
 
+void check_periodic(const Scene& scene) {
+  const auto periodic = [](const Wall& wall) { return wall.kind == Wall::Kind::periodic; };
+  for (const auto& [wall, key] :
+       {std::pair{scene.floor, "domain.floor"}, {scene.top, "domain.top"}})
+    if (periodic(wall)) throw InputError(key, "only left and right can be periodic");
+  if (periodic(scene.left) != periodic(scene.right))
+    throw InputError(periodic(scene.left) ? "domain.right" : "domain.left",
+                     "where one of left and right is periodic the other must be so too");
+  const double cells = scene.domain[0] / scene.h;
+  if (periodic(scene.left) && cells < min_periodic_cells - 0.5)
+    throw InputError("grid.h", "a periodic box must be at least " + number(min_periodic_cells) +
+                                   " cells wide, and this has " + number(std::round(cells)) +
+                                   ": h <= " + number(scene.domain[0] / min_periodic_cells) + " m");
+}
+
 void check_numbers(const Scene& scene) {
   require(scene.end_time, not_negative, "scene.end_time", "end_time");
   require(scene.gravity, not_negative, "scene.gravity", "gravity");
@@ -49,8 +65,12 @@ void check_numbers(const Scene& scene) {
   for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
                                   {scene.left, "domain.left"},
                                   {scene.right, "domain.right"},
-                                  {scene.top, "domain.top"}})
+                                  {scene.top, "domain.top"}}) {
     if (wall.kind == Wall::Kind::friction) require(wall.friction, not_negative, key, "friction");
+    require(wall.speed, {}, key, "speed");
+    if (wall.speed != 0.0 && wall.kind != Wall::Kind::no_slip)
+      throw InputError(key, "only a no-slip wall can drag the material along: leave out its speed");
+  }
   require(scene.h, positive, "grid.h", "h");
   const int edge = scene.points_per_cell > 0 ? points_per_edge(scene) : 0;
   if (scene.points_per_cell > 100 || edge < 1 || edge * edge != scene.points_per_cell)
@@ -196,6 +216,26 @@ void check_geometry(const Scene& scene) {
     }
 }
 
+void check_discs(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (!body.disc) continue;
+    const Disc& disc = *body.disc;
+    if (!(disc.hole >= 0.0 && disc.hole < disc.radius))
+      throw InputError(path_of(i, "hole"),
+                       "hole = " + number(disc.hole) +
+                           " is out of range: must be [0, radius = " + number(disc.radius) + ")");
+    const double thickness = disc.radius - disc.hole;
+    if (thickness < 2.0 * point_spacing(scene))
+      throw InputError(path_of(i, "radius"), "the disc is " + number(thickness) +
+                                                 " m thick, less than two points " +
+                                                 number(point_spacing(scene)) + " m apart");
+    if (body.lithostatic)
+      throw InputError(path_of(i, "initial.lithostatic"),
+                       "a disc has no level surface: only a box can be lithostatic");
+  }
+}
+
 void check_overlap(const Scene& scene) {
   const auto name = [&](std::size_t i) {
     const std::string& given = scene.bodies[i].name;
@@ -236,6 +276,10 @@ void check_viscosity(const Scene& scene) {
                        "a wall with friction does not go with step.viscosity = \"implicit\": its "
                        "limit on the shear is not part of the solve; \"no_slip\", \"slip\" and "
                        "\"open\" do");
+    else if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
+      throw InputError(key,
+                       "a periodic edge or a wall that moves does not go with step.viscosity = "
+                       "\"implicit\" yet; \"no_slip\" at rest, \"slip\" and \"open\" do");
 }
 
 /// What the material says to the state at the base of a lithostatic body.
@@ -290,6 +334,14 @@ std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body) 
   return {std::llround(body.size[0] / spacing), std::llround(body.size[1] / spacing)};
 }
 
+void set_disc(Body& body, const Disc& disc) {
+  body.disc = disc;
+  for (std::size_t k = 0; k < 2; ++k) {
+    body.origin[k] = disc.centre[k] - disc.radius;
+    body.size[k] = 2.0 * disc.radius;
+  }
+}
+
 bool raise_top_to_cells(Scene& scene) {
   if (is_multiple(scene.domain[1], scene.h)) return false;
   // 12 digits: 0.575, not 0.5750000000000001
@@ -300,7 +352,9 @@ bool raise_top_to_cells(Scene& scene) {
 void validate(const Scene& scene) {
   check_numbers(scene);
   check_cells(scene);
+  check_periodic(scene);
   check_geometry(scene);
+  check_discs(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
   check_viscosity(scene);

@@ -20,16 +20,26 @@ struct Wall {
     slip,      ///< a plane of symmetry: no motion through it nor away from it, free motion along it
     friction,  ///< unilateral Coulomb contact: no tension, |shear| <= friction × pressure
     open,      ///< material that crosses leaves the simulation and is counted as outflow
+    periodic,  ///< left and right only, both: what crosses comes in on the other side
   };
   Kind kind = Kind::slip;
   double friction = 0.0;  ///< Coulomb coefficient, for Kind::friction
+  double speed = 0.0;     ///< of the wall along itself, +x or +y, for Kind::no_slip [m/s]
+};
+
+/// A disc of points; with a hole, a ring.
+struct Disc {
+  std::array<double, 2> centre{};  ///< [m]
+  double radius = 0.0;             ///< [m]
+  double hole = 0.0;               ///< radius of the hole [m]
 };
 
 /// A block of one material at rest or in uniform motion.
 struct Body {
   std::string name;
-  std::array<double, 2> origin{};    ///< lower left corner of the box [m]
-  std::array<double, 2> size{};      ///< [m]
+  std::array<double, 2> origin{};  ///< lower left corner of the box [m]
+  std::array<double, 2> size{};    ///< [m]
+  std::optional<Disc> disc;        ///< only the points in it; origin and size bound it: set_disc()
   std::array<double, 2> velocity{};  ///< initial velocity [m/s]
   double spin = 0.0;                 ///< initial angular velocity about the body's centre [rad/s]
   LawSpec law;
@@ -111,6 +121,9 @@ double point_spacing(const Scene& scene);
 /// enough to quieten what the grid cannot carry, long enough that what it carries loses less than
 /// in APIC at any stable step; docs/transfers.md has the measurements. HUGE_VAL without gravity.
 double default_relaxation_time(const Scene& scene);
+
+/// Makes a body a disc: its origin and size become those of the square around it.
+void set_disc(Body& body, const Disc& disc);
 
 /// Points of a body along x and y: its size over point_spacing(), which validate() has found whole.
 std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body);

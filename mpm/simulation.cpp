@@ -19,17 +19,29 @@ std::array<double, 2> gravity_vector(const Scene& scene) {
   return {scene.gravity * std::sin(angle), -scene.gravity * std::cos(angle)};
 }
 
+/// Velocity, gradient and affine velocity of points that have just been filled.
+void set_motion(PointSet& points, const std::function<PointMotion(double, double)>& motion) {
+  for (std::size_t s = 0; s < points.slots(); ++s) {
+    const PointMotion at = motion(points[X][s], points[Y][s]);
+    points[VX][s] = at.velocity[0];
+    points[VY][s] = at.velocity[1];
+    for (std::size_t k = 0; k < affine_fields; ++k)
+      points[LXX + k][s] = points[points.affine + k][s] = at.gradient[k];
+  }
+}
+
 int cells(double length, double h) { return static_cast<int>(std::llround(length / h)); }
 
 }  // namespace
 
-Simulation::Impl::Impl(const Scene& given, int thread_count)
+Simulation::Impl::Impl(const Scene& given, const Prescribed& by_program, int thread_count)
     : scene(given),
       gravity(gravity_vector(given)),
       walls{given.left, given.right, given.floor, given.top},
       grid(given.h, cells(given.domain[0], given.h), cells(given.domain[1], given.h)),
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
-      threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()) {
+      threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
+      prescribed(by_program) {
   std::int64_t next_id = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
@@ -41,6 +53,12 @@ Simulation::Impl::Impl(const Scene& given, int thread_count)
     next_id += static_cast<std::int64_t>(bodies.back().count);
     body_names.push_back(body.name.empty() ? fmt::format("body[{}]", b) : body.name);
     initial_height = std::max(initial_height, body.origin[1] + body.size[1]);
+  }
+  for (PointSet& points : bodies) {
+    if (prescribed.start) set_motion(points, prescribed.start);
+    if (!prescribed.acceleration) continue;
+    start_x.insert(start_x.end(), points.field[X].begin(), points.field[X].end());
+    start_y.insert(start_y.end(), points.field[Y].begin(), points.field[Y].end());
   }
   sort_if_needed();
   signals = initial_signals();
@@ -61,6 +79,11 @@ Simulation::Impl::Impl(const Scene& given, int thread_count)
     for (std::size_t s = 0; s < points.slots(); ++s)
       if (points.id[s] >= 0) mass += points[MASS][s];
   highest_energy = ledger.start - mass * lowest + 1e-9 * mass * signals.signal * signals.signal;
+  // the work of these has no bound
+  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
+  if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
+      drags(walls.right) || drags(walls.floor) || drags(walls.top))
+    highest_energy = HUGE_VAL;
 }
 
 Signals Simulation::Impl::initial_signals() const {
@@ -116,7 +139,8 @@ void Simulation::Impl::remove_outflow() {
     for (std::size_t s = 0; s < points.slots(); ++s) {
       const double x = points[X][s];
       const double y = points[Y][s];
-      if (points.id[s] < 0 || (x >= 0.0 && x <= width && y >= 0.0 && y <= height)) continue;
+      const bool inside = walls.periodic() || (x >= 0.0 && x <= width);
+      if (points.id[s] < 0 || (inside && std::isfinite(x) && y >= 0.0 && y <= height)) continue;
       if (!std::isfinite(x) || !std::isfinite(y))  // no outflow, but a state saved after a failure
         throw NumericalFailure("step " + std::to_string(steps) +
                                " starts from a failed state: point " +
@@ -206,9 +230,11 @@ SeriesRow Simulation::Impl::diagnostics() {
   return row;
 }
 
-Simulation::Simulation(const Scene& scene, int threads) {
+Simulation::Simulation(const Scene& scene, int threads)
+    : Simulation(scene, Prescribed{}, threads) {}
+Simulation::Simulation(const Scene& scene, const Prescribed& prescribed, int threads) {
   validate(scene);
-  impl_ = std::make_unique<Impl>(scene, threads);
+  impl_ = std::make_unique<Impl>(scene, prescribed, threads);
 }
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "mpm/frame_writer.hpp"
+#include "mpm/prescribed.hpp"
 #include "mpm/rest_pressure.hpp"
 #include "mpm/scene.hpp"
 
@@ -55,6 +56,8 @@ class Simulation {
  public:
   /// Fills the bodies with points. `threads` <= 0: all cores. Throws InputError (see validate()).
   explicit Simulation(const Scene& scene, int threads = 0);
+  /// The same with initial velocities and body accelerations of the program's own.
+  Simulation(const Scene& scene, const Prescribed& prescribed, int threads = 0);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 

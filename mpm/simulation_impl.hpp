@@ -7,6 +7,7 @@
 #include "mpm/grid.hpp"
 #include "mpm/implicit_viscosity.hpp"
 #include "mpm/ledger.hpp"
+#include "mpm/periodic.hpp"
 #include "mpm/simulation.hpp"
 #include "mpm/step_size.hpp"
 #include "mpm/transfer.hpp"
@@ -16,7 +17,7 @@ namespace repose::mpm {
 
 class Simulation::Impl {
  public:
-  Impl(const Scene& scene, int threads);
+  Impl(const Scene& scene, const Prescribed& prescribed, int threads);
 
   void step(double stop_at);
 
@@ -46,6 +47,9 @@ class Simulation::Impl {
   mutable tbb::task_arena arena;
   int threads;
 
+  Prescribed prescribed;
+  std::vector<double> start_x, start_y;  ///< by point id, if an acceleration is prescribed [m]
+
   double time = 0.0;
   std::int64_t steps = 0;
   std::int64_t point_steps = 0;
@@ -54,6 +58,7 @@ class Simulation::Impl {
   double drift = 0.0;  ///< bound on the way any point has gone since the last sort [m]
   bool must_sort = true;
   bool tiles_are_current = false;  ///< the tiles hold the points as they are
+  double tiles_time = 0.0;         ///< the moment whose forces they hold [s]
   std::int64_t sorts = 0;
   std::int64_t wall_corrections = 0;
   std::int64_t newton_iterations = 0, cg_iterations = 0;  ///< of the implicit viscosity
@@ -77,6 +82,9 @@ class Simulation::Impl {
   };
   template <class Kernel, bool affine, bool averages>
   void transfer_to_tile(std::size_t block);
+  template <class Kernel>
+  void prescribed_force_to_tile(const PointSet& points, const Range& range,
+                                std::array<int, 2> origin, Tile& tile) const;
   template <class Kernel, Keeps keeps, bool averages>
   void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
   void move(PointSet& points, const Range& range, const Motion& motion, double dt,
@@ -101,11 +109,7 @@ class Simulation::Impl {
   std::string describe(const PointSet& points, std::size_t body, std::size_t slot) const;
 
   std::vector<BlockSums> block_sums_;
-  /// Kinetic energy of a block's nodes before and after forces, ΔtΣ(f + mg)·u.
-  struct NodeSums {
-    double before = 0.0, after = 0.0, impulse_work = 0.0;
-  };
-  std::vector<NodeSums> node_sums_;
+  std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
   WallEffect wall_effect_;
   ImplicitViscosity viscosity_;
   ViscousEffect viscous_effect_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "mpm/block_loops.hpp"
+#include "mpm/body_force.hpp"
 #include "mpm/pressure_averaging.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/transfer.hpp"
@@ -57,13 +58,15 @@ void Simulation::Impl::step(double stop_at) {
   const double dt = choose_step(stop_at);
   if (!tiles_are_current) points_to_grid();
   update_grid(dt);
+  if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
   wall_effect_ = apply_walls(grid, walls);
   solve_viscosity(dt);
+  tiles_time = time + dt >= stop_at - 1e-9 * dt ? stop_at : time + dt;
   grid_to_points(dt);
   last_dt = dt;
   dt_min = std::min(dt_min, dt);
   dt_max = std::max(dt_max, dt);
-  time = time + dt >= stop_at - 1e-9 * dt ? stop_at : time + dt;
+  time = tiles_time;
   ++steps;
   close_ledger();
 }
@@ -71,6 +74,10 @@ void Simulation::Impl::step(double stop_at) {
 void Simulation::Impl::sort_if_needed() {
   // a tile covers one cell around its block
   if (!must_sort && drift < reach()) return;
+  if (walls.periodic()) {
+    const double width = grid.h() * grid.nx();
+    for (PointSet& points : bodies) ledger.outflow -= wrap_points(points, width, gravity[0]);
+  }
   remove_outflow();
   grid.sort(bodies);
   tiles_are_current = false;
@@ -120,10 +127,31 @@ void Simulation::Impl::transfer_to_tile(std::size_t block) {
     }
     points_to_tile<Kernel, affine, averages>(bodies[b], range, grid.h(), tile_origin(pb),
                                              elastic.data(), tile);
+    if (prescribed.acceleration)
+      prescribed_force_to_tile<Kernel>(bodies[b], range, tile_origin(pb), tile);
   }
 }
 
+template <class Kernel>
+void Simulation::Impl::prescribed_force_to_tile(const PointSet& points, const Range& range,
+                                                std::array<int, 2> origin, Tile& tile) const {
+  if (range.count == 0) return;
+  const std::size_t n = range.count;
+  static thread_local std::vector<double> scratch;
+  scratch.assign(4 * n, 0.0);
+  const std::span<double> start[2] = {{scratch.data(), n}, {scratch.data() + n, n}};
+  const std::span<double> a[2] = {{scratch.data() + 2 * n, n}, {scratch.data() + 3 * n, n}};
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto name = static_cast<std::size_t>(points.id[range.begin + k]);
+    start[0][k] = start_x[name];
+    start[1][k] = start_y[name];
+  }
+  prescribed.acceleration(tiles_time, start[0], start[1], a[0], a[1]);
+  body_force_to_tile<Kernel>(points, range, a[0], a[1], grid.h(), origin, tile);
+}
+
 void Simulation::Impl::points_to_grid() {
+  tiles_time = time;
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
     choose(scene.kernel, retention(0.0).affine, averages(),
            [&]<class K>(K, auto affine, auto averages) {
@@ -257,6 +285,7 @@ void Simulation::Impl::move(PointSet& points, const Range& range, const Motion& 
   const double width = grid.h() * grid.nx();
   const double height = grid.h() * grid.ny();
   const auto keep = [&](double& x, double upper, const Wall& low, const Wall& high, bool counts) {
+    if (low.kind == Wall::Kind::periodic) return;  // wrapped when points are sorted
     if (x < hair) {
       if (low.kind == Wall::Kind::open) {
         sums.outflow = sums.outflow || x < 0.0;
@@ -300,16 +329,31 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   double* const work = spin + n;
   double* const modulus = work + n;
   double* const viscosity = modulus + n;
-  const Pack step(dt), half_step(0.5 * dt);
+  // The step maps x to x + Δt v(x), whose gradient is I + A, A = Δt L: its logarithm is A − ½A², to
+  // third order in Δt. (A alone would make density and strain first order in Δt.) A viscous law
+  // takes only the volume from it, and the rest from D = sym L, which is what its stress follows.
+  const bool follows_rate = !points.material->law().has_stress_memory;
+  const Pack step(dt), half(0.5), zero(0.0);
   std::fill_n(scratch, 5 * n, 0.0);  // padding that no pack of points reaches is at rest
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
-    const auto at = [&](Field f) { return Pack::load_aligned(points[f] + range.begin + k); };
+    const auto at = [&](Field f) { return step * Pack::load_aligned(points[f] + range.begin + k); };
+    const Pack xx = at(LXX);
     const Pack xy = at(LXY);
     const Pack yx = at(LYX);
-    (step * at(LXX)).store_aligned(e_xx + k);
-    (step * at(LYY)).store_aligned(e_yy + k);
-    (half_step * (xy + yx)).store_aligned(e_xy + k);
-    (half_step * (yx - xy)).store_aligned(spin + k);
+    const Pack yy = at(LYY);
+    // −½A²: xx, yy, and what the off-diagonal terms are multiplied by
+    Pack c_xx = -half * (xx * xx + xy * yx);
+    Pack c_yy = -half * (yy * yy + xy * yx);
+    Pack c = -half * (xx + yy);
+    if (follows_rate) {
+      c_xx = c_yy = half * (c_xx + c_yy);
+      c = zero;
+    }
+    (xx + c_xx).store_aligned(e_xx + k);
+    (yy + c_yy).store_aligned(e_yy + k);
+    const Pack share = half * (Pack(1.0) + c);
+    (share * (xy + yx)).store_aligned(e_xy + k);
+    (share * (yx - xy)).store_aligned(spin + k);
   }
   Batch batch = points.batch(range);
   batch.dt = dt;
@@ -413,6 +457,7 @@ void Simulation::Impl::close_ledger() {
   const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
   ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
+  ledger.wall_loss -= wall_effect_.drag_after - kept * wall_effect_.drag_before;
   ledger.kinetic = kinetic;
   ledger.power = power;
   ledger.stress_work += work + viscous_effect_.half_jump_work;

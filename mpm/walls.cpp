@@ -64,6 +64,9 @@ struct Triple {
     return {x.a - y.a, x.b - y.b, x.c - y.c};
   }
 
+  /// Seen from a wall that slides along itself.
+  Triple moved(double by) const { return {{a.n, a.t + by}, {b.n, b.t + by}, {c.n, c.t + by}}; }
+
   /// Normal odd; tangential a mixture of even (stick = 0) and odd (stick = 1).
   Triple mirrored(double m_a, double m_c, double stick) const {
     const double share = m_a + m_c > 0.0 ? 1.0 / (m_a + m_c) : 0.0;
@@ -102,8 +105,8 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
     stick = coulomb_share(v, m_a, m_b, m_c, wall.friction, inward);
     if (stick < 0.0) return {};
   }
-  const Triple u_new = u.mirrored(m_a, m_c, stick);
-  const Triple v_new = v.mirrored(m_a, m_c, stick);
+  const Triple u_new = u.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
+  const Triple v_new = v.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
   a.set(m_a + m_c, u_new.a, v_new.a);
   b.set(2.0 * m_b, u_new.b, v_new.b);
   c.set(m_a + m_c, u_new.c, v_new.c);
@@ -113,14 +116,15 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
            m[2] * (x.c.n * y.c.n + x.c.t * y.c.t);
   };
   const Triple kick = v - u;  // Δt(f + mg)/m
+  const auto along = [&](const Triple& x) { return m[0] * x.a.t + m[1] * x.b.t + m[2] * x.c.t; };
   return {0.5 * (dot(u_new, u_new) - dot(u, u)), 0.5 * (dot(v_new, v_new) - dot(v, v)),
-          dot(kick, u_new - u)};
+          dot(kick, u_new - u), wall.speed * along(u_new - u), wall.speed * along(v_new - v)};
 }
 
 /// A wall along a line of nodes: x = const (normal_is_x) or y = const at node index `line`.
 WallEffect apply_wall(Grid& grid, const Wall& wall, bool normal_is_x, int line, int inward) {
   WallEffect total;
-  if (wall.kind == Wall::Kind::open) return total;
+  if (wall.kind == Wall::Kind::open || wall.kind == Wall::Kind::periodic) return total;
   const int block = normal_is_x ? grid.block_of_cell_x(line) : grid.block_of_cell_y(line);
   for (const NodeBlock& nb : grid.node_blocks) {
     if ((normal_is_x ? nb.bx : nb.by) != block) continue;

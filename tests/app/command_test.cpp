@@ -135,7 +135,7 @@ TEST_F(CommandTest, MisuseIsBadInput) {
 TEST_F(CommandTest, Models) {
   const Outcome list = run({"models"});
   EXPECT_EQ(list.exit, 0);
-  for (const char* const name : {"modified_cam_clay", "mu_i", "newtonian"})
+  for (const char* const name : {"modified_cam_clay", "mu_i", "newtonian", "neo_hookean"})
     EXPECT_NE(list.out.find(name), std::string::npos);
   const Outcome law = run({"models", "mu_i"});
   EXPECT_EQ(law.exit, 0);
@@ -146,7 +146,7 @@ TEST_F(CommandTest, Models) {
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_EQ(unknown.err,
             "repose models: unknown law \"mu_j\"; did you mean \"mu_i\"? (known: "
-            "\"modified_cam_clay\", \"mu_i\", \"newtonian\")\n");
+            "\"modified_cam_clay\", \"mu_i\", \"newtonian\", \"neo_hookean\")\n");
   EXPECT_TRUE(Json::parse(run({"models", "mu_i", "--json"}).out).is_array());
 }
 

@@ -108,6 +108,40 @@ TEST(ReadScene, walls_apply_to_three_edges_unless_one_is_named) {
   EXPECT_EQ(scene.right.kind, mpm::Wall::Kind::open);
 }
 
+TEST(ReadScene, a_periodic_box_with_a_moving_lid) {
+  const mpm::Scene scene =
+      scene_of(
+          replaced(granular, "[[body]]", "walls = \"periodic\"\ntop = { speed = 0.25 }\n[[body]]"))
+          .scene;
+  EXPECT_EQ(scene.left.kind, mpm::Wall::Kind::periodic);
+  EXPECT_EQ(scene.right.kind, mpm::Wall::Kind::periodic);
+  EXPECT_EQ(scene.top.kind, mpm::Wall::Kind::no_slip);
+  EXPECT_EQ(scene.top.speed, 0.25);
+  EXPECT_EQ(
+      scene_of(replaced(granular, "[[body]]", "walls = \"periodic\"\n[[body]]")).scene.top.kind,
+      mpm::Wall::Kind::slip);
+  EXPECT_EQ(problems(replaced(granular, "[[body]]", "left = \"periodic\"\n[[body]]")),
+            "s.toml: domain.right: where one of left and right is periodic the other must be so "
+            "too");
+  EXPECT_EQ(problems(replaced(granular, "[[body]]", "top = \"periodic\"\n[[body]]")),
+            "s.toml: domain.top: only left and right can be periodic");
+}
+
+TEST(ReadScene, a_disc_has_a_centre_and_a_radius) {
+  const std::string disc =
+      replaced(granular, "size = [0.2, 0.4]",
+               "shape = \"disc\"\ncentre = [0.3, 0.2]\nradius = 0.1\nhole = 0.05");
+  const mpm::Body body = scene_of(disc).scene.bodies.at(0);
+  ASSERT_TRUE(body.disc);
+  EXPECT_EQ(body.disc->hole, 0.05);
+  EXPECT_EQ(body.size, (std::array{0.2, 0.2}));
+  EXPECT_DOUBLE_EQ(body.origin[1], 0.1);
+  EXPECT_NE(problems(replaced(disc, "hole = 0.05", "hole = 0.15"))
+                .find("body[0].hole: hole = 0.15 is out of range: must be [0, radius = 0.1)"),
+            std::string::npos)
+      << problems(replaced(disc, "hole = 0.05", "hole = 0.15"));
+}
+
 TEST(ReadScene, tension_cutoff_is_a_boolean) {
   const std::string fluid =
       "[scene]\nend_time = 1\n[domain]\nsize = [1, 1]\n[[body]]\nsize = [0.5, 0.5]\n"
