@@ -128,6 +128,8 @@ void read_grid(TomlReader table, mpm::Scene& scene) {
 }
 
 void read_step(TomlReader table, mpm::Scene& scene) {
+  // without gravity there is no time from which a relaxation time could follow
+  if (scene.gravity == 0.0) scene.transfer = mpm::Transfer::apic;
   scene.transfer = static_cast<mpm::Transfer>(
       table.choice("transfer", {mpm::transfer_names.begin(), mpm::transfer_names.end()},
                    static_cast<std::size_t>(scene.transfer)));
@@ -153,8 +155,8 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   if (tolerance && scene.viscosity != mpm::Viscosity::implicit_solve)
     table.report("viscosity_tolerance", "only step.viscosity = \"implicit\" has a tolerance");
   scene.viscosity_tolerance = tolerance.value_or(scene.viscosity_tolerance);
-  scene.courant = table.number(
-      {"courant", "-", "share of the stable step", Range{0.0, 1.0, true, false}, scene.courant});
+  scene.courant =
+      table.number({"courant", "-", "share of the stable step", mpm::courant_range, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});
   if (!table.has("courant") || !table.has("dt")) return;
   // An override replaces the file's choice; within one place the two contradict each other.

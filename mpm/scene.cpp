@@ -80,7 +80,7 @@ void check_numbers(const Scene& scene) {
   require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
   require(scene.viscosity_tolerance, {0.0, 0.1, true, false}, "step.viscosity_tolerance",
           "viscosity_tolerance");
-  require(scene.courant, {0.0, 1.0, true, false}, "step.courant", "courant");
+  require(scene.courant, courant_range, "step.courant", "courant");
   if (scene.dt) require(*scene.dt, positive, "step.dt", "dt");
   require(scene.frame_interval, not_negative, "output.frame_interval", "frame_interval");
   require(scene.series_interval, not_negative, "output.series_interval", "series_interval");

@@ -78,6 +78,10 @@ enum class Viscosity {
 /// Their names in scene files, in the same order.
 constexpr std::array<std::string_view, 2> viscosity_names{"explicit", "implicit"};
 
+/// Where a step has a chance to be stable: the bulk is, in two directions, up to 1.93/√2 = 1.36
+/// (cubic).
+inline constexpr repose::Range courant_range{0.0, 1.4, true, false};
+
 struct Scene {
   std::string name;
   double end_time = 0.0;  ///< [s]
@@ -95,7 +99,7 @@ struct Scene {
   double h = 0.0;           ///< cell size [m]
   int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16
   Kernel kernel = Kernel::cubic;
-  Transfer transfer = Transfer::apic;
+  Transfer transfer = Transfer::relaxed;
   /// [s], for Transfer::relaxed; absent: default_relaxation_time()
   std::optional<double> relaxation_time;
   /// c: the pressure noise of the points decays as e^{−cγ} in shear γ [-]; 0: no averaging. Of the
@@ -107,7 +111,7 @@ struct Scene {
   /// (root mean square by mass); implicit_viscosity.hpp says what it bounds.
   double viscosity_tolerance = 1e-3;
 
-  double courant = 0.4;      ///< Δt = courant · h/(c + |v|), if dt is absent
+  double courant = 0.8;      ///< Δt = courant · h/(c + |v|), if dt is absent; see step_size.hpp
   std::optional<double> dt;  ///< fixed step [s]
 
   double frame_interval = 0.0;   ///< [s]; 0: no frames

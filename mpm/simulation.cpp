@@ -118,15 +118,21 @@ double Simulation::Impl::initial_power() const {
   double power = 0.0;
   for (const PointSet& points : bodies)
     for (std::size_t s = 0; s < points.slots(); ++s)
-      if (points.id[s] >= 0) power += power_of(points, s);
+      if (points.id[s] >= 0) power += power_of(points, s, 0.0);
   return power;
 }
 
-double Simulation::Impl::power_of(const PointSet& points, std::size_t s) const {
+double Simulation::Impl::power_of(const PointSet& points, std::size_t s, double dt) const {
   const auto& stress = points.force_stress;
-  const double stress_power = points[stress[0]][s] * points[LXX][s] +
-                              points[stress[1]][s] * points[LYY][s] +
-                              points[stress[2]][s] * (points[LXY][s] + points[LYX][s]);
+  const double xx = points[LXX][s], xy = points[LXY][s], yx = points[LYX][s], yy = points[LYY][s];
+  double c_xx = dt * (xx * xx + xy * yx), c_yy = dt * (yy * yy + xy * yx), c = dt * (xx + yy);
+  if (!points.material->law().has_stress_memory) {
+    c_xx = c_yy = 0.5 * (c_xx + c_yy);
+    c = 0.0;
+  }
+  const double stress_power = points[stress[0]][s] * (xx - c_xx) +
+                              points[stress[1]][s] * (yy - c_yy) +
+                              points[stress[2]][s] * (1.0 - c) * (xy + yx);
   return points[MASS][s] *
          (gravity[0] * points[VX][s] + gravity[1] * points[VY][s] - stress_power / points[RHO][s]);
 }
@@ -158,7 +164,7 @@ void Simulation::Impl::remove_outflow() {
       ledger.outflow_elastic += elastic;
       ledger.outflow_mass += m;
       ledger.kinetic -= kinetic;
-      ledger.power -= power_of(points, s);
+      ledger.power -= power_of(points, s, last_dt);
       points.id[s] = -1;
       --points.count;
     }

@@ -104,8 +104,8 @@ class Simulation::Impl {
   Retention retention(double dt) const;
   void remove_outflow();
   double initial_power() const;
-  /// −Vσ:L + mg·v of one point [W/m].
-  double power_of(const PointSet& points, std::size_t slot) const;
+  /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].
+  double power_of(const PointSet& points, std::size_t slot, double dt) const;
   std::string describe(const PointSet& points, std::size_t body, std::size_t slot) const;
 
   std::vector<BlockSums> block_sums_;

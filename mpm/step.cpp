@@ -390,7 +390,8 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
 
 void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const Batch& batch,
                               const Motion& motion, BlockSums& sums) const {
-  const Pack half(0.5), one(1.0), gx(gravity[0]), gy(gravity[1]);
+  const bool follows_rate = !points.material->law().has_stress_memory;
+  const Pack half(0.5), one(1.0), zero(0.0), step(batch.dt), gx(gravity[0]), gy(gravity[1]);
   const Pack viscous_factor(4.0 / (grid.h() * grid.h()));
   Pack kinetic(0.0), work(0.0), power(0.0);
   Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
@@ -410,8 +411,21 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
     const auto force_stress = [&](std::size_t c) {
       return Pack::load_aligned(points[points.force_stress[c]] + range.begin + k);
     };
-    const Pack stress_power = force_stress(0) * at(LXX) + force_stress(1) * at(LYY) +
-                              force_stress(2) * (at(LXY) + at(LYX));
+    // Seen from where the step ends, the velocity that it moved with has the gradient L(I + ΔtL)⁻¹
+    // ≈ L − ΔtL²; strain() takes its volume alone for a law that follows the rate.
+    const Pack xx = at(LXX);
+    const Pack xy = at(LXY);
+    const Pack yx = at(LYX);
+    const Pack yy = at(LYY);
+    Pack c_xx = step * (xx * xx + xy * yx);
+    Pack c_yy = step * (yy * yy + xy * yx);
+    Pack c = step * (xx + yy);
+    if (follows_rate) {
+      c_xx = c_yy = half * (c_xx + c_yy);
+      c = zero;
+    }
+    const Pack stress_power = force_stress(0) * (xx - c_xx) + force_stress(1) * (yy - c_yy) +
+                              force_stress(2) * (one - c) * (xy + yx);
     power = power + m * (gx * moving_x + gy * moving_y - stress_power * inv_rho);
     const Pack v2 = moving_x * moving_x + moving_y * moving_y;
     speed2 = max_of(speed2, v2);

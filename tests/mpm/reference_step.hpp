@@ -108,6 +108,13 @@ class Model {
     motion[1].fill(logarithm(1, 1));
     motion[3].fill(0.5 * (logarithm(0, 1) + logarithm(1, 0)));
     motion[4].fill(0.5 * (logarithm(1, 0) - logarithm(0, 1)));
+    if (!materials_[point.body]->law().has_stress_memory) {  // D itself, but with that volume
+      const double volume = logarithm(0, 0) + logarithm(1, 1) - A[0][0] - A[1][1];
+      motion[0].fill(A[0][0] + 0.5 * volume);
+      motion[1].fill(A[1][1] + 0.5 * volume);
+      motion[3].fill(0.5 * (A[0][1] + A[1][0]));
+      motion[4].fill(0.5 * (A[1][0] - A[0][1]));
+    }
     for (std::size_t f = 0; f < field.size(); ++f) field[f].fill(point[f]);
     Batch batch;
     batch.count = 1;

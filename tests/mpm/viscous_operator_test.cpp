@@ -100,13 +100,14 @@ class Patch {
   template <class K, class F>
   void stencil_of(std::size_t s, F& f) {
     const double x = points()[X][s], y = points()[Y][s];
-    const Weights wx = K::at(x / h), wy = K::at(y / h);
-    for (int j = 0; j < K::rows; ++j)
-      for (int i = 0; i < K::rows; ++i) {
-        const Grid::NodeRef node = grid_.node(wx.base + i, wy.base + j);
-        f(*node.block, node.place,
-          wx.w.get(static_cast<std::size_t>(i)) * wy.w.get(static_cast<std::size_t>(j)),
-          (wx.base + i) * h - x, (wy.base + j) * h - y);
+    const double first_x = K::anchor(x / h) - 1.0, first_y = K::anchor(y / h) - 1.0;
+    const auto wx = K::weights(x / h - first_x - 1.0), wy = K::weights(y / h - first_y - 1.0);
+    for (std::size_t j = 0; j < K::rows; ++j)
+      for (std::size_t i = 0; i < K::rows; ++i) {
+        const double node_x = first_x + static_cast<double>(i);
+        const double node_y = first_y + static_cast<double>(j);
+        const Grid::NodeRef node = grid_.node(static_cast<int>(node_x), static_cast<int>(node_y));
+        f(*node.block, node.place, wx[i] * wy[j], node_x * h - x, node_y * h - y);
       }
   }
 
