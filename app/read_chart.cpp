@@ -48,9 +48,8 @@ ChartTable read_chart(InputFile& file) {
       table.choices("kernels", {mpm::kernel_names.begin(), mpm::kernel_names.end()}));
   sweep.cells =
       table.number_list({"cells", "m", "cell sizes", positive, {}}).value_or(std::vector<double>{});
-  sweep.courants =
-      table.number_list({"courants", "-", "Courant numbers", Range{0.0, 1.0, true, false}, {}})
-          .value_or(std::vector<double>{});
+  sweep.courants = table.number_list({"courants", "-", "Courant numbers", mpm::courant_range, {}})
+                       .value_or(std::vector<double>{});
   sweep.dts =
       table.number_list({"dts", "s", "fixed steps", positive, {}}).value_or(std::vector<double>{});
   return chart;

@@ -323,7 +323,7 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   const std::size_t n = padded(range.count);
   double* const e_xx = scratch;
   double* const e_yy = e_xx + n;
-  double* const e_zz = e_yy + n;  // plane strain: stays 0
+  double* const e_zz = e_yy + n;  // plane strain: 0 but for shares of a volume strain
   double* const e_xy = e_zz + n;
   double* const spin = e_xy + n;
   double* const work = spin + n;
@@ -333,7 +333,7 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   // third order in Δt. (A alone would make density and strain first order in Δt.) A viscous law
   // takes only the volume from it, and the rest from D = sym L, which is what its stress follows.
   const bool follows_rate = !points.material->law().has_stress_memory;
-  const Pack step(dt), half(0.5), zero(0.0);
+  const Pack step(dt), half(0.5), third(1.0 / 3.0), zero(0.0);
   std::fill_n(scratch, 5 * n, 0.0);  // padding that no pack of points reaches is at rest
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const auto at = [&](Field f) { return step * Pack::load_aligned(points[f] + range.begin + k); };
@@ -345,9 +345,10 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
     Pack c_xx = -half * (xx * xx + xy * yx);
     Pack c_yy = -half * (yy * yy + xy * yx);
     Pack c = -half * (xx + yy);
-    if (follows_rate) {
-      c_xx = c_yy = half * (c_xx + c_yy);
+    if (follows_rate) {  // its volume only, the same in all three directions
+      c_xx = c_yy = third * (c_xx + c_yy);
       c = zero;
+      c_xx.store_aligned(e_zz + k);
     }
     (xx + c_xx).store_aligned(e_xx + k);
     (yy + c_yy).store_aligned(e_yy + k);
@@ -403,8 +404,8 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
     const Pack vy = at(VY);
     const Pack moving_x = Pack::load_aligned(motion.vx + k);
     const Pack moving_y = Pack::load_aligned(motion.vy + k);
-    const Pack strain_v =
-        Pack::load_aligned(batch.strain[0] + k) + Pack::load_aligned(batch.strain[1] + k);
+    const auto strain_of = [&](std::size_t i) { return Pack::load_aligned(batch.strain[i] + k); };
+    const Pack strain_v = strain_of(0) + strain_of(1) + strain_of(2);
     kinetic = kinetic + half * m * (vx * vx + vy * vy);
     // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
     work = work + m * inv_rho * (one - half * strain_v) * Pack::load_aligned(batch.work + k);

@@ -168,7 +168,7 @@ TEST_F(ChartMpm, AQuickChart) {
     EXPECT_EQ(row.at("points"), "512");
     EXPECT_EQ(row.at("threads"), "1");
     EXPECT_GT(std::stod(row.at("point_steps_per_cpu_s")), 0.0);
-    EXPECT_GT(std::stod(row.at("peak_kinetic_J_per_m")), std::stod(row.at("kinetic_J_per_m")));
+    EXPECT_GE(std::stod(row.at("peak_kinetic_J_per_m")), std::stod(row.at("kinetic_J_per_m")));
     if (i % 2 == 0)
       EXPECT_NE(std::stod(row.at("profile_change_max")), 0.0);
     else
@@ -176,12 +176,13 @@ TEST_F(ChartMpm, AQuickChart) {
   }
 
   // the same run by hand
-  ASSERT_EQ(run({"run", REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml", "--set", "grid.h=0.025",
-                 "--set", "step.courant=0.8", "--set", "scene.end_time=0.2", "--set",
-                 "output.series_interval=" + fmt::format("{}", 0.2 / 60), "--set",
-                 "output.frame_interval=0", "--threads", "1"},
-                "hand"),
-            0);
+  ASSERT_EQ(
+      run({"run", REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml", "--set", "grid.h=0.025", "--set",
+           "step.courant=0.8", "--set", "step.transfer=apic", "--set", "scene.end_time=0.2",
+           "--set", "output.series_interval=" + fmt::format("{}", 0.2 / 60), "--set",
+           "output.frame_interval=0", "--threads", "1"},
+          "hand"),
+      0);
   const nlohmann::json hand = summary("hand");
   EXPECT_EQ(chart[0].at("steps"), std::to_string(hand["steps"].get<int>()));
   for (const char* key : {"front_m", "height_m", "kinetic_J_per_m", "angular_momentum"})
@@ -251,11 +252,12 @@ TEST_F(ChartMpm, SaysWhatIsWrong) {
                 "\"; got the string \"flop\"; did you mean \"flip\"?\n");
   EXPECT_EQ(complaint({"mpm", "--courants", "0.4,1.5"}),
             "--set chart.courants=[0.4, 1.5]: chart.courants[1] = 1.5 is out of range: Courant "
-            "numbers must be a number in (0, 1]\n");
+            "numbers must be a number in (0, 1.4]\n");
   EXPECT_EQ(
       complaint({"mpm", "--cells", "0.03"}).find("--set chart.cells=[0.03]: cells of 0.03 m: "), 0u)
       << error_;
-  EXPECT_EQ(complaint({"mpm", "--dts", "1e-4,"}).find("--set chart.dts=[1e-4, ]"), 0u) << error_;
+  EXPECT_EQ(complaint({"mpm", "--dts", "1e-4,,1e-5"}).find("--set chart.dts=[1e-4, "), 0u)
+      << error_;
   EXPECT_EQ(complaint({"mpm", REPOSE_SOURCE_DIR "/data/experiments/weald_clay_undrained.toml"})
                 .find("weald_clay_undrained.toml:"),
             std::string(REPOSE_SOURCE_DIR "/data/experiments/").size())

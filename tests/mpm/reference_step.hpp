@@ -110,8 +110,9 @@ class Model {
     motion[4].fill(0.5 * (logarithm(1, 0) - logarithm(0, 1)));
     if (!materials_[point.body]->law().has_stress_memory) {  // D itself, but with that volume
       const double volume = logarithm(0, 0) + logarithm(1, 1) - A[0][0] - A[1][1];
-      motion[0].fill(A[0][0] + 0.5 * volume);
-      motion[1].fill(A[1][1] + 0.5 * volume);
+      motion[0].fill(A[0][0] + volume / 3.0);
+      motion[1].fill(A[1][1] + volume / 3.0);
+      motion[2].fill(volume / 3.0);
       motion[3].fill(0.5 * (A[0][1] + A[1][0]));
       motion[4].fill(0.5 * (A[1][0] - A[0][1]));
     }

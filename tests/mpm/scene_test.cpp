@@ -61,7 +61,7 @@ TEST(Scene, numbers_out_of_range) {
   EXPECT_EQ(complaint(scene), "scene.tilt_deg: tilt_deg = 91 is out of range: must be [-90, 90]");
   scene = sound();
   scene.courant = 0.0;
-  EXPECT_EQ(complaint(scene), "step.courant: courant = 0 is out of range: must be (0, 1]");
+  EXPECT_EQ(complaint(scene), "step.courant: courant = 0 is out of range: must be (0, 1.4]");
   scene = sound();
   scene.dt = 0.0;
   EXPECT_EQ(complaint(scene), "step.dt: dt = 0 is out of range: must be > 0");
