@@ -152,10 +152,8 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
          line("kernel", toml_string(mpm::name_of(scene.kernel)));
   out +=
       "\n[step]\n" + line("transfer", toml_string(mpm::name_of(scene.transfer))) +
-      (scene.transfer == mpm::Transfer::relaxed
-           ? line("relaxation_time",
-                  number(scene.relaxation_time.value_or(mpm::default_relaxation_time(scene))), "s")
-           : "") +
+      // left out where it follows from h, so that it goes on following in a chart over h
+      (scene.relaxation_time ? line("relaxation_time", number(*scene.relaxation_time), "s") : "") +
       line("viscosity",
            toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
       (scene.viscosity == mpm::Viscosity::implicit_solve

@@ -54,12 +54,17 @@ T mean(const Sym<T, N>& a) {
   return a[0] + ((a[1] - a[0]) + (a[2] - a[0])) / T(3.0);
 }
 
-/// a − (tr a/3) I
+/// a − (tr a/3) I, from differences: nothing of a large tr a is left in it.
 template <class T, int N>
 Sym<T, N> deviator(const Sym<T, N>& a) {
-  const T m = mean(a);
+  const T third(1.0 / 3.0);
+  const T xy = a[0] - a[1];
+  const T yz = a[1] - a[2];
+  const T zx = a[2] - a[0];
   Sym<T, N> r = a;
-  for (int i = 0; i < 3; ++i) r[i] = a[i] - m;
+  r[0] = third * (xy - zx);
+  r[1] = third * (yz - xy);
+  r[2] = third * (zx - yz);
   return r;
 }
 

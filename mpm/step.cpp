@@ -31,6 +31,11 @@ T max_of(const T& largest_so_far, const T& x) {
   return select(x <= largest_so_far, largest_so_far, x);
 }
 
+/// The smaller of two; a NaN in `x` is kept.
+Pack min_of(const Pack& smallest_so_far, const Pack& x) {
+  return select(x >= smallest_so_far, smallest_so_far, x);
+}
+
 double largest(const Pack& x) {
   alignas(Pack) std::array<double, Pack::size> lane;
   x.store_aligned(lane.data());
@@ -334,7 +339,11 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   // takes only the volume from it, and the rest from D = sym L, which is what its stress follows.
   const bool follows_rate = !points.material->law().has_stress_memory;
   const Pack step(dt), half(0.5), third(1.0 / 3.0), zero(0.0);
-  std::fill_n(scratch, 5 * n, 0.0);  // padding that no pack of points reaches is at rest
+  Pack least_volume(1.0);  // det(I + A)
+  std::fill_n(e_zz, n, 0.0);
+  if (n - range.count >= Pack::size)  // padding that no pack of points reaches is at rest
+    for (double* const array : {e_xx, e_yy, e_xy, spin})
+      std::fill_n(array + n - Pack::size, Pack::size, 0.0);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const auto at = [&](Field f) { return step * Pack::load_aligned(points[f] + range.begin + k); };
     const Pack xx = at(LXX);
@@ -350,12 +359,17 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
       c = zero;
       c_xx.store_aligned(e_zz + k);
     }
+    least_volume = min_of(least_volume, (Pack(1.0) + xx) * (Pack(1.0) + yy) - xy * yx);
     (xx + c_xx).store_aligned(e_xx + k);
     (yy + c_yy).store_aligned(e_yy + k);
     const Pack share = half * (Pack(1.0) + c);
     (share * (xy + yx)).store_aligned(e_xy + k);
     (share * (yx - xy)).store_aligned(spin + k);
   }
+  if (any(!(least_volume > zero)) && sums.failure.empty())
+    sums.failure = fmt::format(
+        "a step of {:.3g} s turns a point of {} inside out: det(I + dt grad v) = {:.3g}", dt,
+        body_names[body], least(least_volume));
   Batch batch = points.batch(range);
   batch.dt = dt;
   batch.strain = {e_xx, e_yy, e_zz, e_xy};
