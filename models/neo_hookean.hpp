@@ -85,7 +85,9 @@ struct NeoHookean {
     using std::log;
     const T J = P.rho_0 / density;
     const T most = mean(stress) + T(2.0 / std::sqrt(3.0)) * shear_norm(deviator(stress));
-    return (P.lambda * (T(1.0) - T(2.0) * log(J)) + T(2.0) * P.mu) / J + most;
+    const T M = (P.lambda * (T(1.0) - T(2.0) * log(J)) + T(2.0) * P.mu) / J + most;
+    const T shear = P.mu / J;  // far enough stretched, it yields along n: no wave, but still stiff
+    return select(M > shear, M, shear);
   }
 
   template <class T, int N>

@@ -12,7 +12,7 @@
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 2;
+constexpr std::int64_t format_version = 3;
 
 /// An open HDF5 object, closed by its own function.
 class Handle {
@@ -124,7 +124,8 @@ void Simulation::save(const std::filesystem::path& path) const {
                     "create a file in memory");
 
   std::vector<double> reals;
-  std::vector<std::int64_t> wholes{format_version, s.must_sort ? 1 : 0};
+  std::vector<std::int64_t> wholes{format_version, s.must_sort ? 1 : 0,
+                                   static_cast<std::int64_t>(pack_size)};
   each_scalar(
       s, [&](double x) { reals.push_back(x); }, [&](std::int64_t x) { wholes.push_back(x); });
   write(file, "reals", reals);
@@ -164,10 +165,13 @@ void Simulation::load(const std::filesystem::path& path) {
                       "open it as a checkpoint");
     const std::vector<double> reals = read<double>(file, "reals");
     const std::vector<std::int64_t> wholes = read<std::int64_t>(file, "wholes");
-    if (wholes.size() < 2 || wholes[0] != format_version)
+    if (wholes.size() < 3 || wholes[0] != format_version)
       reject("it is a checkpoint of another version of repose");
+    if (wholes[2] != static_cast<std::int64_t>(pack_size))
+      reject("it was saved by a build for another width of vectors");
+    s.tiles_are_current = false;
     std::size_t next_real = 0;
-    std::size_t next_whole = 2;
+    std::size_t next_whole = 3;
     s.must_sort = wholes[1] != 0;
     each_scalar(
         s, [&](double& x) { x = reals.at(next_real++); },
@@ -198,7 +202,6 @@ void Simulation::load(const std::filesystem::path& path) {
             {static_cast<std::size_t>(row[2 + 2 * b]), static_cast<std::size_t>(row[3 + 2 * b])});
     }
     s.grid.restore(std::move(restored));
-    s.tiles_are_current = false;
   } catch (const IoError&) {
     throw;
   } catch (const std::exception& e) {

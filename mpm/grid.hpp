@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The background grid: blocks of 8 × 4 cells, of which only those near material exist.
+/// The background grid: blocks of 8 × 8 cells, of which only those near material exist.
 ///
 /// Node (i, j) lies at (i h, j h), so nodes 0 and nx lie on the walls and −1, nx + 1 are ghosts.
 /// Points are sorted by the block of their cell. A block's points write to, and read from, a dense

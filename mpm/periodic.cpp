@@ -1,5 +1,9 @@
 #include "mpm/periodic.hpp"
 
+#include <cmath>
+
+#include "mpm/simulation.hpp"
+
 namespace repose::mpm {
 namespace {
 
@@ -63,10 +67,12 @@ double wrap_points(PointSet& points, double width, double gravity_x) {
   for (std::size_t s = 0; s < points.slots(); ++s) {
     if (points.id[s] < 0) continue;
     const double x = points[X][s];
-    const double shift = x < 0.0 ? width : x >= width ? -width : 0.0;
-    if (shift == 0.0) continue;
-    points[X][s] = x + shift;
-    energy -= points[MASS][s] * gravity_x * shift;
+    if (x >= 0.0 && x < width) continue;
+    if (!std::isfinite(x))  // left by a failure; nothing to come back from
+      throw NumericalFailure("point " + std::to_string(points.id[s]) + " has no finite position");
+    const double inside = x - width * std::floor(x / width);
+    points[X][s] = inside < width ? inside : 0.0;  // −1e-17 + width is width
+    energy -= points[MASS][s] * gravity_x * (points[X][s] - x);
   }
   return energy;
 }

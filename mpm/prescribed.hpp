@@ -21,8 +21,8 @@ struct Prescribed {
   /// The motion of the point filled at (X, Y) [m], instead of its body's velocity and spin.
   std::function<PointMotion(double X, double Y)> start;
   /// Adds to (ax, ay) [m/s²] the acceleration, beside gravity, at time t [s] of the points that
-  /// started at (X[k], Y[k]). Called once per block and body in a step, from several threads at a
-  /// time. Its work is not part of the energy ledger and appears in its residual.
+  /// started at (X[k], Y[k]). Called once or twice per block and body in a step, from several
+  /// threads at a time. Its work is not part of the energy ledger and appears in its residual.
   std::function<void(double t, std::span<const double> X, std::span<const double> Y,
                      std::span<double> ax, std::span<double> ay)>
       acceleration;

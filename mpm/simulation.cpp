@@ -125,13 +125,15 @@ double Simulation::Impl::initial_power() const {
 double Simulation::Impl::power_of(const PointSet& points, std::size_t s, double dt) const {
   const auto& stress = points.force_stress;
   const double xx = points[LXX][s], xy = points[LXY][s], yx = points[LYX][s], yy = points[LYY][s];
-  double c_xx = dt * (xx * xx + xy * yx), c_yy = dt * (yy * yy + xy * yx), c = dt * (xx + yy);
+  double c_xx = dt * (xx * xx + xy * yx), c_yy = dt * (yy * yy + xy * yx), c_zz = 0.0;
+  double c = dt * (xx + yy);
   if (!points.material->law().has_stress_memory) {
-    c_xx = c_yy = 0.5 * (c_xx + c_yy);
+    c_xx = c_yy = c_zz = (c_xx + c_yy) / 3.0;
     c = 0.0;
   }
+  const double zz = points[points.splits_stress() ? stress[0] : std::size_t{SZZ}][s];
   const double stress_power = points[stress[0]][s] * (xx - c_xx) +
-                              points[stress[1]][s] * (yy - c_yy) +
+                              points[stress[1]][s] * (yy - c_yy) - zz * c_zz +
                               points[stress[2]][s] * (1.0 - c) * (xy + yx);
   return points[MASS][s] *
          (gravity[0] * points[VX][s] + gravity[1] * points[VY][s] - stress_power / points[RHO][s]);

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The Material Point Method simulation of one scene: explicit, plane strain, APIC.
+/// The Material Point Method simulation of one scene: plane strain.
 
 #include <cstdint>
 #include <filesystem>

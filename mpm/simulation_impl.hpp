@@ -78,6 +78,7 @@ class Simulation::Impl {
     Signals signals;
     std::int64_t corrections = 0;
     bool outflow = false;
+    bool transferred = false;  ///< its tile holds the points as they are
     std::string failure;
   };
   template <class Kernel, bool affine, bool averages>

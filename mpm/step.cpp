@@ -1,4 +1,4 @@
-/// The explicit step (APIC with moving-least-squares forces), stage by stage.
+/// The step (transfers with moving-least-squares forces), stage by stage.
 
 #include <fmt/format.h>
 
@@ -28,12 +28,12 @@ void choose(Kernel kernel, bool a, bool b, F&& f) {
 /// The larger of two; a NaN in `x` is kept, so that it cannot slip through a maximum.
 template <class T>
 T max_of(const T& largest_so_far, const T& x) {
-  return select(x <= largest_so_far, largest_so_far, x);
+  return select(x > largest_so_far || x != x, x, largest_so_far);
 }
 
 /// The smaller of two; a NaN in `x` is kept.
 Pack min_of(const Pack& smallest_so_far, const Pack& x) {
-  return select(x >= smallest_so_far, smallest_so_far, x);
+  return select(x < smallest_so_far || x != x, x, smallest_so_far);
 }
 
 double largest(const Pack& x) {
@@ -229,14 +229,15 @@ void Simulation::Impl::grid_to_points(double dt) {
       advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
     // While the points of the block are in the cache: their way to the grid of the next step. If
     // any of them has left the tile, all blocks are sorted first (sort_if_needed), and this waits.
-    if (drift + sums.signals.speed * dt < reach() && sums.failure.empty())
-      transfer_to_tile<Kernel, affine.value, averages.value>(k);
+    sums.transferred = drift + sums.signals.speed * dt < reach() && sums.failure.empty();
+    if (sums.transferred) transfer_to_tile<Kernel, affine.value, averages.value>(k);
   };
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
     choose(scene.kernel, keep.affine, averages(),
            [&](auto kernel, auto affine, auto averages) { advance(kernel, affine, averages, k); });
   });
-  tiles_are_current = true;  // unless points have left them, and then sort_if_needed() says so
+  tiles_are_current = std::all_of(block_sums_.begin(), block_sums_.end(),
+                                  [](const BlockSums& sums) { return sums.transferred; });
 }
 
 template <class Kernel, Keeps keeps, bool averages>
@@ -383,7 +384,6 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
     add_averaging_strain(*points.material, batch, scene.pressure_averaging, motion.elastic,
                          pressure_before, {e_xx, e_yy, e_zz, e_xy});
   const UpdateReport report = points.material->update(batch);
-  if (averages()) take_back_averaging_work(batch, motion.elastic, pressure_before);
   if (!report.ok() && sums.failure.empty()) {
     const std::size_t k = report.failed;
     sums.failure = fmt::format(
@@ -392,6 +392,7 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
         describe(points, body, range.begin + k), e_xx[k], e_yy[k], e_xy[k], dt);
   }
   if (points.splits_stress()) split_stress(points, range, batch);
+  if (averages()) take_back_averaging_work(batch, motion.elastic, pressure_before);
   // A point alone in its stencil has the density m Σw²/h² (Σw² = 0.21 to 0.25, cubic; more,
   // quadratic); looser than that the grid cannot tell, and spray would dilate without end.
   const Pack per_cell(0.2 / (grid.h() * grid.h()));
@@ -406,7 +407,8 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
 void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const Batch& batch,
                               const Motion& motion, BlockSums& sums) const {
   const bool follows_rate = !points.material->law().has_stress_memory;
-  const Pack half(0.5), one(1.0), zero(0.0), step(batch.dt), gx(gravity[0]), gy(gravity[1]);
+  const Pack half(0.5), third(1.0 / 3.0), one(1.0), zero(0.0), step(batch.dt), gx(gravity[0]),
+      gy(gravity[1]);
   const Pack viscous_factor(4.0 / (grid.h() * grid.h()));
   Pack kinetic(0.0), work(0.0), power(0.0);
   Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
@@ -435,12 +437,14 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
     Pack c_xx = step * (xx * xx + xy * yx);
     Pack c_yy = step * (yy * yy + xy * yx);
     Pack c = step * (xx + yy);
+    Pack c_zz = zero;
     if (follows_rate) {
-      c_xx = c_yy = half * (c_xx + c_yy);
+      c_xx = c_yy = c_zz = third * (c_xx + c_yy);
       c = zero;
     }
-    const Pack stress_power = force_stress(0) * (xx - c_xx) + force_stress(1) * (yy - c_yy) +
-                              force_stress(2) * (one - c) * (xy + yx);
+    const Pack zz = points.splits_stress() ? force_stress(0) : at(SZZ);
+    const Pack stress_power = force_stress(0) * (xx - c_xx) + force_stress(1) * (yy - c_yy) -
+                              zz * c_zz + force_stress(2) * (one - c) * (xy + yx);
     power = power + m * (gx * moving_x + gy * moving_y - stress_power * inv_rho);
     const Pack v2 = moving_x * moving_x + moving_y * moving_y;
     speed2 = max_of(speed2, v2);
@@ -486,7 +490,7 @@ void Simulation::Impl::close_ledger() {
   const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
   ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
-  ledger.wall_loss -= wall_effect_.drag_after - kept * wall_effect_.drag_before;
+  ledger.wall_loss -= wall_effect_.drag_after - wall_effect_.drag_before;
   ledger.kinetic = kinetic;
   ledger.power = power;
   ledger.stress_work += work + viscous_effect_.half_jump_work;
@@ -512,7 +516,7 @@ void Simulation::Impl::close_ledger() {
   // Divergence: kinetic energy beyond all energy that the scene can turn into motion, or a signal
   // so fast that the step shrinks to nothing (not the last step before a stop, which may be as
   // short as it likes). Also catches NaN (the comparisons are false).
-  const bool sound = kinetic <= 2.0 * highest_energy &&
+  const bool sound = std::isfinite(kinetic) && kinetic <= 2.0 * highest_energy &&
                      (scene.dt || stable_step(now, scene.courant, grid.h()) >= 1e-9 * first_dt);
   must_sort = must_sort || failure != nullptr || !sound;  // drift may be NaN: look at every point
   if (failure != nullptr)

@@ -15,7 +15,7 @@ struct Signals {
 
   /// A NaN stays one.
   void include(const Signals& other) {
-    const auto larger = [](double x, double y) { return y <= x ? x : y; };
+    const auto larger = [](double x, double y) { return y > x || y != y ? y : x; };
     speed = larger(speed, other.speed);
     signal = larger(signal, other.signal);
     viscous_rate = larger(viscous_rate, other.viscous_rate);
@@ -29,9 +29,9 @@ struct Signals {
 /// and 2G, in shear: Δt = 2/ω is 0.82 h/c for a fluid, 1.03 h/c for μ(I) with G = 4K and 1.02 h/c
 /// for Cam-Clay with ν = 0.3 (cubic; quadratic: 0.87 of it).
 inline double stable_step(const Signals& s, double courant, double h) {
-  const double wave = s.signal > 0.0 ? courant * h / s.signal : HUGE_VAL;
-  const double viscous = s.viscous_rate > 0.0 ? 0.9 / s.viscous_rate : HUGE_VAL;
-  return std::min(wave, viscous);
+  const double wave = s.signal == 0.0 ? HUGE_VAL : courant * h / s.signal;
+  const double viscous = s.viscous_rate == 0.0 ? HUGE_VAL : 0.9 / s.viscous_rate;
+  return std::isnan(viscous) ? viscous : std::isnan(wave) ? wave : std::min(wave, viscous);
 }
 
 }  // namespace repose::mpm

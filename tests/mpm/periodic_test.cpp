@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mpm/step_size.hpp"
 #include "tests/mpm/saved_state.hpp"
 #include "tests/mpm/scenes.hpp"
 
@@ -98,6 +99,54 @@ TEST(MovingWallTest, UniformShearIsExact) {
   const double work = eta * V * V / H * 0.8 * simulation.time();
   EXPECT_NEAR(row.dissipated_J_per_m, work, 1.01 / steps * work) << "the first step starts at 0";
   EXPECT_NEAR(row.wall_loss_J_per_m, -work, 1.01 / steps * work);
+}
+
+// A step of several widths is wrapped by as many, and what crossed is still in the box.
+TEST(PeriodicTest, AnyNumberOfWidthsAtOnce) {
+  Scene scene = thrown(0.6, 10.0);
+  scene.bodies[0].spin = 0.0;
+  scene.bodies[0].initial.p = 0.0;
+  scene.dt = 0.5;  // 5 m, more than three widths, in uniform motion without stress
+  Simulation simulation(scene, 1);
+  run_steps(simulation, 2);
+  const auto points = points_of(simulation);
+  EXPECT_EQ(points.size(), 64u);
+  // round-off of the pressure, 16 eps K, on h: Δt 16 eps K/(ρh) = 4e-13 m/s, and at a Courant number
+  // of 22 the second step multiplies it by 22² = 500
+  for (const PointState& p : points) EXPECT_NEAR(p[VX], 10.0, 500 * 4e-13);
+}
+
+// A floor that starts at once: what it drags goes through both its impulses on the nodes, and the
+// ledger accounts for all but what is of second order in the step (the first impulse of dt/τ
+// relative size: half the energy that the first row of cells, a sixth of the layer, takes at once).
+TEST(MovingWallTest, TheLedgerClosesFromRest) {
+  for (const Transfer transfer : {Transfer::apic, Transfer::relaxed, Transfer::aflip}) {
+    Scene scene = empty_box(0.5, 0.5, 0.05);
+    scene.left = scene.right = {Wall::Kind::periodic};
+    scene.floor = {Wall::Kind::no_slip, 0.0, 0.5};
+    scene.gravity = 9.8;
+    scene.tilt_deg = 10.0;
+    scene.transfer = transfer;
+    if (transfer == Transfer::relaxed) scene.relaxation_time = 1e-3;
+    scene.bodies = {block(0.0, 0.0, 0.5, 0.3, mu_i(26e3))};
+    scene.bodies[0].lithostatic = true;
+    Simulation simulation(scene, 1);
+    run_until(simulation, 0.3);
+    const SeriesRow row = simulation.diagnostics();
+    EXPECT_LT(std::abs(row.energy_residual_J_per_m), 0.01 * row.kinetic_J_per_m);
+    EXPECT_GT(std::abs(row.wall_loss_J_per_m), 0.03 * row.kinetic_J_per_m)
+        << "or this test sees nothing";
+  }
+}
+
+TEST(SignalsTest, ANumberThatIsNoneStaysOne) {
+  Signals signals;
+  signals.include({std::nan(""), 1.0, 0.0});
+  signals.include({1.0, 2.0, 0.0});
+  EXPECT_TRUE(std::isnan(signals.speed));
+  EXPECT_EQ(signals.signal, 2.0);
+  EXPECT_TRUE(std::isnan(stable_step({1.0, std::nan(""), 0.0}, 0.4, 0.1)));
+  EXPECT_TRUE(std::isnan(stable_step({1.0, 1.0, std::nan("")}, 0.4, 0.1)));
 }
 
 }  // namespace
