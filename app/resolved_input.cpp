@@ -147,6 +147,9 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
            ? line("relaxation_time",
                   number(scene.relaxation_time.value_or(mpm::default_relaxation_time(scene))), "s")
            : "") +
+      (scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm
+           ? line("order", std::to_string(scene.order), "1 is pic")
+           : "") +
       (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
                 : line("courant", number(scene.courant), "of the largest stable step"));
   out += "\n[output]\n" + line("frame_interval", number(scene.frame_interval), "s, 0 for none") +

@@ -53,6 +53,12 @@ struct alignas(64) NodeBlock {
   std::array<std::int32_t, 9> point_block{};  ///< the point blocks around; −1 where there is none
 };
 
+/// A velocity at the nodes of every node block, in their order.
+struct alignas(64) NodeVelocity {
+  std::array<double, block_nodes> x{}, y{};
+};
+using NodeField = std::vector<NodeVelocity>;
+
 class Grid {
  public:
   /// `nx` × `ny` cells of size h; one ring of blocks is kept around the box for ghosts.

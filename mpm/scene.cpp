@@ -13,6 +13,7 @@ constexpr double max_cells = 1e9;   ///< of the box: half a gigabyte of tables
 constexpr double min_cells = 3;     ///< across the box
 constexpr double max_frames = 1e6;
 constexpr double max_rows = 1e7;
+constexpr double max_order = 100;
 constexpr double tolerance = 1e-6;  ///< of a cell or a point spacing
 
 std::string number(double x, int digits = 10) {
@@ -57,6 +58,7 @@ void check_numbers(const Scene& scene) {
     throw InputError("grid.points_per_cell",
                      "points_per_cell = " + std::to_string(scene.points_per_cell) +
                          " must be a square number from 1 to 100: 1, 4, 9, 16, ...");
+  require(scene.order, {1.0, max_order, false, false}, "step.order", "order");
   require(scene.courant, {0.0, 1.0, true, false}, "step.courant", "courant");
   if (scene.dt) require(*scene.dt, positive, "step.dt", "dt");
   require(scene.frame_interval, not_negative, "output.frame_interval", "frame_interval");

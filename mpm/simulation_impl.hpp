@@ -24,6 +24,7 @@ class Simulation::Impl {
   double choose_step(double stop_at) const;
   void points_to_grid();           ///< P2G: mass, momentum, internal force of every block's tile
   void update_grid(double dt);     ///< sum tiles, accelerate nodes
+  void extend_velocity();          ///< XPIC, FMPM beyond first order (extended_pic.cpp)
   void grid_to_points(double dt);  ///< G2P, move, update stress, P2G of the next step
   void close_ledger();             ///< kinetic energies before and after; throws NumericalFailure
 
@@ -72,6 +73,15 @@ class Simulation::Impl {
     bool outflow = false;
     std::string failure;
   };
+  /// Calls f(kernel) with the scene's interpolation functions.
+  template <class F>
+  void with_kernel(F&& f) const {
+    const bool spline_gradient = scene.transfer == Transfer::tpic;
+    if (scene.kernel == mpm::Kernel::cubic)
+      spline_gradient ? f(SplineGradient<CubicKernel>{}) : f(CubicKernel{});
+    else
+      spline_gradient ? f(SplineGradient<QuadraticKernel>{}) : f(QuadraticKernel{});
+  }
   template <class Kernel, bool affine>
   void transfer_to_tile(std::size_t block);
   template <class Kernel, Keeps keeps>
@@ -99,9 +109,13 @@ class Simulation::Impl {
   /// Kinetic energy of a block's nodes before and after forces, ΔtΣ(f + mg)·u.
   struct NodeSums {
     double before = 0.0, after = 0.0, impulse_work = 0.0;
+    double extension_work = 0.0;  ///< ½ΔtΣ(f + mg)·(v_k − v), see extended_pic.hpp
   };
   std::vector<NodeSums> node_sums_;
   WallEffect wall_effect_;
+  std::vector<MirroredTriple> mirrored_;  ///< what the walls did, for the extension
+  /// Of the extension: its remainder r, A r, and what it has added up.
+  NodeField remainder_, through_points_, extension_;
 };
 
 }  // namespace repose::mpm

@@ -1,48 +1,13 @@
 /// The explicit step (APIC with moving-least-squares forces), stage by stage.
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "mpm/simulation_impl.hpp"
+#include "mpm/tile_exchange.hpp"
 #include "mpm/transfer.hpp"
 
 namespace repose::mpm {
 namespace {
-
-/// Calls f(k) for k in [0, n) on the arena's threads; f must only write what belongs to k.
-template <class F>
-void for_each_block(tbb::task_arena& arena, std::size_t n, F&& f) {
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n), [&](const auto& part) {
-      for (std::size_t k = part.begin(); k != part.end(); ++k) f(k);
-    });
-  });
-}
-
-std::array<int, 2> tile_origin(const PointBlock& pb) {
-  return {Grid::first_x(pb.bx) - tile_margin_x, Grid::first_y(pb.by) - tile_margin_y};
-}
-
-/// Calls f(node of the block, entry of the tile, columns) for the rows that a tile and a node block
-/// share, `columns` (8 or 4) being known to the compiler. dx, dy = tile's block − node block.
-template <class F>
-void for_each_shared_row(int dx, int dy, F&& f) {
-  const int begin = std::max(0, dy * block_ny - tile_margin_y);
-  const int end = std::min(block_ny, dy * block_ny + tile_rows - tile_margin_y);
-  for (int j = begin; j < end; ++j) {
-    const auto node = static_cast<std::size_t>(j * block_nx);
-    const auto entry = static_cast<std::size_t>((j + tile_margin_y - dy * block_ny) * tile_stride);
-    using Four = std::integral_constant<std::size_t, tile_margin_x>;
-    using Eight = std::integral_constant<std::size_t, block_nx>;
-    if (dx == 0)
-      f(node, entry + tile_margin_x, Eight{});
-    else if (dx < 0)
-      f(node, entry + tile_margin_x + block_nx, Four{});
-    else
-      f(node + block_nx - tile_margin_x, entry, Four{});
-  }
-}
 
 /// The larger of two; a NaN in `x` is kept, so that it cannot slip through a maximum.
 template <class T>
@@ -77,7 +42,9 @@ void Simulation::Impl::step(double stop_at) {
   const double dt = choose_step(stop_at);
   if (!tiles_are_current) points_to_grid();
   update_grid(dt);
-  wall_effect_ = apply_walls(grid, walls);
+  const bool extends = retention(dt).extended;
+  wall_effect_ = apply_walls(grid, walls, extends ? &mirrored_ : nullptr);
+  if (extends) extend_velocity();
   grid_to_points(dt);
   last_dt = dt;
   dt_min = std::min(dt_min, dt);
@@ -114,9 +81,13 @@ Retention Simulation::Impl::retention(double dt) const {
     case Transfer::flip:
       return {false, 1.0, 0.0};
     case Transfer::apic:
+    case Transfer::tpic:
       return {true, 0.0, 0.0};
     case Transfer::aflip:
       return {true, 1.0, 0.0};
+    case Transfer::xpic:
+    case Transfer::fmpm:
+      return {false, 0.0, 0.0, scene.order > 1};
     case Transfer::relaxed:
       break;
   }
@@ -137,11 +108,9 @@ void Simulation::Impl::transfer_to_tile(std::size_t block) {
 void Simulation::Impl::points_to_grid() {
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
     const bool affine = retention(0.0).affine;
-    if (scene.kernel == Kernel::cubic)
-      affine ? transfer_to_tile<CubicKernel, true>(k) : transfer_to_tile<CubicKernel, false>(k);
-    else
-      affine ? transfer_to_tile<QuadraticKernel, true>(k)
-             : transfer_to_tile<QuadraticKernel, false>(k);
+    with_kernel([&]<class Kernel>(Kernel) {
+      affine ? transfer_to_tile<Kernel, true>(k) : transfer_to_tile<Kernel, false>(k);
+    });
   });
 }
 
@@ -149,22 +118,8 @@ void Simulation::Impl::update_grid(double dt) {
   node_sums_.resize(grid.node_blocks.size());
   for_each_block(arena, grid.node_blocks.size(), [&](std::size_t k) {
     NodeBlock& nb = grid.node_blocks[k];
-    // own every node: sum what the tiles around put on it, always in the same order
-    alignas(64) std::array<std::array<double, block_nodes>, tile_channels> sum{};
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::int32_t source = nb.point_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
-        if (source < 0) continue;
-        const Tile& tile = grid.tiles[static_cast<std::size_t>(source)];
-        for_each_shared_row(dx, dy, [&](std::size_t node, std::size_t entry, auto columns) {
-          for (std::size_t c = 0; c < tile_channels; ++c) {
-            const double* from = tile[c].data() + entry;
-            double* to = sum[c].data() + node;
-            for (std::size_t i = 0; i < columns; i += Row::size)
-              (Row::load_aligned(to + i) + Row::load_aligned(from + i)).store_aligned(to + i);
-          }
-        });
-      }
+    alignas(64) NodeTotals<tile_channels> sum{};
+    add_tiles<tile_channels>(grid, nb, {T_MASS, T_PX, T_PY, T_FX, T_FY}, sum);
     Pack before(0.0), after(0.0), impulse_work(0.0);
     const Pack zero(0.0), half(0.5), one(1.0), step(dt);
     for (std::size_t n = 0; n < block_nodes; n += Pack::size) {
@@ -191,7 +146,7 @@ void Simulation::Impl::update_grid(double dt) {
       after = after + half * m * (wx * wx + wy * wy);
       impulse_work = impulse_work + m * (kick_x * ux + kick_y * uy);
     }
-    node_sums_[k] = {xsimd::hadd(before), xsimd::hadd(after), xsimd::hadd(impulse_work)};
+    node_sums_[k] = {xsimd::hadd(before), xsimd::hadd(after), xsimd::hadd(impulse_work), 0.0};
   });
 }
 
@@ -203,6 +158,8 @@ void Simulation::Impl::grid_to_points(double dt) {
       advance_block<Kernel, Keeps::velocity_and_gradient>(k, dt, keep, block_sums_[k]);
     else if (keep.velocity > 0.0)
       advance_block<Kernel, Keeps::velocity>(k, dt, keep, block_sums_[k]);
+    else if (keep.extended && scene.transfer == Transfer::xpic)
+      advance_block<Kernel, Keeps::extension>(k, dt, keep, block_sums_[k]);
     else
       advance_block<Kernel, Keeps::nothing>(k, dt, keep, block_sums_[k]);
     // While the points of the block are in the cache: their way to the grid of the next step. If
@@ -211,9 +168,8 @@ void Simulation::Impl::grid_to_points(double dt) {
     if (drift + sums.signals.speed * dt < reach() && sums.failure.empty())
       keep.affine ? transfer_to_tile<Kernel, true>(k) : transfer_to_tile<Kernel, false>(k);
   };
-  for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    scene.kernel == Kernel::cubic ? advance(CubicKernel{}, k) : advance(QuadraticKernel{}, k);
-  });
+  for_each_block(arena, grid.point_blocks.size(),
+                 [&](std::size_t k) { with_kernel([&](auto kernel) { advance(kernel, k); }); });
   tiles_are_current = true;  // unless points have left them, and then sort_if_needed() says so
 }
 
@@ -224,19 +180,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, const Retenti
   VelocityTile tile;
   const auto fill = [&](std::array<double, tile_nodes> VelocityTile::*field,
                         auto NodeBlock::*from) {
-    (tile.*field).fill(0.0);
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::int32_t source = pb.node_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
-        if (source < 0) continue;
-        const NodeBlock& nb = grid.node_blocks[static_cast<std::size_t>(source)];
-        // seen from the node block, this tile's block lies at (−dx, −dy)
-        for_each_shared_row(-dx, -dy, [&](std::size_t node, std::size_t entry, auto columns) {
-          for (std::size_t i = 0; i < columns; i += Row::size)
-            Row::load_aligned((nb.*from).data() + node + i)
-                .store_aligned((tile.*field).data() + entry + i);
-        });
-      }
+    fill_tile(pb, tile.*field, [&](std::size_t k) { return (grid.node_blocks[k].*from).data(); });
   };
   fill(&VelocityTile::vx, &NodeBlock::vx);
   fill(&VelocityTile::vy, &NodeBlock::vy);
@@ -401,14 +345,18 @@ void Simulation::Impl::close_ledger() {
     nodes.before += part.before;
     nodes.after += part.after;
     nodes.impulse_work += part.impulse_work;
+    nodes.extension_work += part.extension_work;
   }
   // at the whole step, with half a kick on both sides (ledger.hpp)
   const double points_to_nodes =
       (ledger.kinetic + 0.5 * last_dt * ledger.power) - (nodes.before + 0.5 * nodes.impulse_work);
   const double nodes_to_points = nodes.after + wall_effect_.kinetic_after - kinetic;
   const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
-  const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
-  ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
+  const Retention keep = retention(last_dt);
+  // what points keep, no mirror takes; nor, beyond first order, what an extension gives back
+  const double kept = keep.extended ? 1.0 : keep.velocity;
+  ledger.transfer_loss +=
+      points_to_nodes + nodes_to_points + nodes.extension_work - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
   ledger.kinetic = kinetic;
   ledger.power = power;
