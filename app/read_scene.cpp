@@ -127,8 +127,7 @@ void read_step(TomlReader table, mpm::Scene& scene) {
       scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm;
   if (!has_order && table.has("order"))
     table.report("order", "only step.transfer = \"xpic\" and \"fmpm\" have an order");
-  scene.order =
-      static_cast<int>(table.integer("order", "of the filter, 1 is pic", 1, 100, scene.order));
+  scene.order = static_cast<int>(table.integer("order", "1 is pic", 1, 100, scene.order));
   scene.courant = table.number(
       {"courant", "-", "share of the stable step", Range{0.0, 1.0, true, false}, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});

@@ -232,7 +232,18 @@ TEST(ReadSceneErrors, relaxation_time_belongs_to_relaxed) {
             "s.toml:19:1: only step.transfer = \"relaxed\" has a relaxation time");
   EXPECT_EQ(problems(granular + "[step]\ntransfer = \"relaxd\"\n"),
             "s.toml:19:1: step.transfer must be one of \"pic\", \"flip\", \"apic\", \"aflip\", "
-            "\"relaxed\"; got the string \"relaxd\"; did you mean \"relaxed\"?");
+            "\"relaxed\", \"tpic\", \"xpic\", \"fmpm\"; got the string \"relaxd\"; did you mean "
+            "\"relaxed\"?");
+}
+
+TEST(ReadSceneErrors, order_belongs_to_xpic_and_fmpm) {
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"xpic\"\norder = 5\n"), "");
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"fmpm\"\n"), "");
+  EXPECT_EQ(problems(granular + "[step]\norder = 2\n"),
+            "s.toml:19:1: only step.transfer = \"xpic\" and \"fmpm\" have an order");
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"xpic\"\norder = 0\n"),
+            "s.toml:20:1: step.order must be an integer from 1 to 100 (1 is pic); got "
+            "the integer 0");
 }
 
 TEST(ReadSceneErrors, courant_or_dt) {
