@@ -126,6 +126,15 @@ ExitCode parse_and_run(std::span<const char* const> arguments) {
 
 }  // namespace
 
+std::string origin_line(const std::string& path, const CommonOptions& options) {
+  std::string text = "From " + path;
+  for (std::size_t i = 0; i < options.sets.size(); ++i)
+    text += fmt::format("{} --set {}", i == 0 ? " with" : "", options.sets[i]);
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  return text;
+}
+
 void add_set(CLI::App& verb, CommonOptions& options) {
   verb.add_option("--set", options.sets,
                   "Override a key of the file, as in --set grid.h=0.0125 or "

@@ -9,6 +9,7 @@ namespace {
 constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
 
 volatile std::sig_atomic_t flag = 0;
+int guards = 0;  // that live
 std::array<struct sigaction, signals.size()> before;
 
 void restore() {
@@ -23,6 +24,7 @@ void note(int signal) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
+  if (guards++ > 0) return;
   flag = 0;
   struct sigaction action {};
   action.sa_handler = note;
@@ -35,7 +37,9 @@ InterruptGuard::InterruptGuard() {
   }
 }
 
-InterruptGuard::~InterruptGuard() { restore(); }
+InterruptGuard::~InterruptGuard() {
+  if (--guards == 0) restore();
+}
 
 bool InterruptGuard::requested() const { return flag != 0; }
 

@@ -3,7 +3,8 @@
 namespace repose::app {
 
 /// While one lives, the first SIGINT, SIGTERM or SIGHUP only sets a flag, so that a run can save
-/// its state; the second one ends the program at once. nohup is respected. One at a time.
+/// its state; the second one ends the program at once. nohup is respected. One within
+/// another shares its flag.
 class InterruptGuard {
  public:
   InterruptGuard();

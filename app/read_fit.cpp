@@ -18,6 +18,7 @@ namespace {
 void read_tables(InputFile& file, std::uint64_t seed, const std::filesystem::path& cache,
                  FitFile& out) {
   TomlReader root(file);
+  root.expect("chart");  // read_chart.hpp
   out.name = std::filesystem::path(file.name()).stem().string();
   out.law = read_law(root.table("law"));
   TomlReader fit = root.table("fit");
@@ -99,6 +100,7 @@ FitFile read_fit(const std::filesystem::path& file, std::span<const std::string>
   read_tables(input, seed, cache, out);
 
   toml::table resolved = given.root();
+  resolved.erase("chart");  // says nothing of the fit
   if (toml::array* targets = resolved["target"].as_array())
     for (auto& node : *targets)
       if (toml::table* t = node.as_table())

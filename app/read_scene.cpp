@@ -41,12 +41,16 @@ void read_general(TomlReader table, mpm::Scene& scene) {
 
 Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   if (const toml::node* node = table.get(key); node != nullptr && node->is_table()) {
+    TomlReader given = table.table(key);
+    if (given.has("speed"))
+      return {Wall::Kind::no_slip, 0.0,
+              given.number({"speed", "m/s", "of the wall along itself", {}, {}})};
     Wall wall{Wall::Kind::friction};
-    wall.friction =
-        table.table(key).number({"friction", "-", "Coulomb coefficient", not_negative, {}});
+    wall.friction = given.number({"friction", "-", "Coulomb coefficient", not_negative, {}});
     return wall;
   }
-  constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open};
+  constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open,
+                             Wall::Kind::periodic};
   table.expect(key);
   if (!table.has(key)) return fallback;
   const toml::node& node = *table.get(key);
@@ -57,12 +61,14 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
     return fallback;
   }
   if (!node.is_string()) {
-    table.report(key, fmt::format("{} must be one of \"no_slip\", \"slip\", \"open\", or a table "
-                                  "such as {{ friction = 0.4 }}; got {}",
-                                  table.path_of(key), describe(node)));
+    table.report(key,
+                 fmt::format("{} must be one of \"no_slip\", \"slip\", \"open\", \"periodic\", "
+                             "or a table such as {{ friction = 0.4 }} or {{ speed = 0.1 }}; "
+                             "got {}",
+                             table.path_of(key), describe(node)));
     return fallback;
   }
-  return {kinds[table.choice(key, {"no_slip", "slip", "open"}, 0)]};
+  return {kinds[table.choice(key, {"no_slip", "slip", "open", "periodic"}, 0)]};
 }
 
 void read_domain(TomlReader table, mpm::Scene& scene) {
@@ -71,7 +77,8 @@ void read_domain(TomlReader table, mpm::Scene& scene) {
   const Wall walls = read_wall(table, "walls", scene.left);
   scene.left = read_wall(table, "left", walls);
   scene.right = read_wall(table, "right", walls);
-  scene.top = read_wall(table, "top", walls);
+  // periodic walls are those across the flow; the top is then left as it is by default
+  scene.top = read_wall(table, "top", walls.kind == Wall::Kind::periodic ? scene.top : walls);
 }
 
 void read_initial(TomlReader table, mpm::Body& body) {
@@ -94,9 +101,16 @@ void read_initial(TomlReader table, mpm::Body& body) {
 mpm::Body read_body(TomlReader table, std::size_t position) {
   mpm::Body body;
   body.name = table.text("name", "a name for messages", fmt::format("body{}", position));
-  table.choice("shape", {"box"}, 0);
-  body.origin = table.pair({"origin", "m", "lower left corner", {}, {}}, std::array{0.0, 0.0});
-  body.size = table.pair({"size", "m", "width and height", positive, {}});
+  if (table.choice("shape", {"box", "disc"}, 0) == 0) {
+    body.origin = table.pair({"origin", "m", "lower left corner", {}, {}}, std::array{0.0, 0.0});
+    body.size = table.pair({"size", "m", "width and height", positive, {}});
+  } else {
+    mpm::Disc disc;
+    disc.centre = table.pair({"centre", "m", "of the disc", {}, {}});
+    disc.radius = table.number({"radius", "m", "of the disc", positive, {}});
+    disc.hole = table.number({"hole", "m", "radius of the disc's hole", not_negative, 0.0});
+    set_disc(body, disc);
+  }
   body.velocity = table.pair({"velocity", "m/s", "initial velocity", {}, {}}, std::array{0.0, 0.0});
   body.spin = table.number({"spin", "rad/s", "initial angular velocity", {}, 0.0});
   read_initial(table.table("initial"), body);
@@ -108,11 +122,14 @@ void read_grid(TomlReader table, mpm::Scene& scene) {
   scene.h = table.number({"h", "m", "cell size", positive, {}});
   scene.points_per_cell = static_cast<int>(table.integer(
       "points_per_cell", "a square number: 1, 4, 9, 16", 1, 100, scene.points_per_cell));
-  scene.kernel = table.choice("kernel", {"quadratic", "cubic"}, 1) == 0 ? mpm::Kernel::quadratic
-                                                                        : mpm::Kernel::cubic;
+  scene.kernel = static_cast<mpm::Kernel>(
+      table.choice("kernel", {mpm::kernel_names.begin(), mpm::kernel_names.end()},
+                   static_cast<std::size_t>(scene.kernel)));
 }
 
 void read_step(TomlReader table, mpm::Scene& scene) {
+  // without gravity there is no time from which a relaxation time could follow
+  if (scene.gravity == 0.0) scene.transfer = mpm::Transfer::apic;
   scene.transfer = static_cast<mpm::Transfer>(
       table.choice("transfer", {mpm::transfer_names.begin(), mpm::transfer_names.end()},
                    static_cast<std::size_t>(scene.transfer)));
@@ -128,8 +145,23 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   if (!has_order && table.has("order"))
     table.report("order", "only step.transfer = \"xpic\" and \"fmpm\" have an order");
   scene.order = static_cast<int>(table.integer("order", "1 is pic", 1, 100, scene.order));
-  scene.courant = table.number(
-      {"courant", "-", "share of the stable step", Range{0.0, 1.0, true, false}, scene.courant});
+  scene.pressure_averaging =
+      table.number({"pressure_averaging", "-", "of neighbouring points, per unit of shear strain",
+                    not_negative, scene.pressure_averaging});
+  scene.viscosity = static_cast<mpm::Viscosity>(
+      table.choice("viscosity", {mpm::viscosity_names.begin(), mpm::viscosity_names.end()},
+                   static_cast<std::size_t>(scene.viscosity)));
+  const auto tolerance =
+      table.optional_number({"viscosity_tolerance",
+                             "-",
+                             "error of an implicit step's velocity over what its forces bring",
+                             Range{0.0, 0.1, true, false},
+                             {}});
+  if (tolerance && scene.viscosity != mpm::Viscosity::implicit_solve)
+    table.report("viscosity_tolerance", "only step.viscosity = \"implicit\" has a tolerance");
+  scene.viscosity_tolerance = tolerance.value_or(scene.viscosity_tolerance);
+  scene.courant =
+      table.number({"courant", "-", "share of the stable step", mpm::courant_range, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});
   if (!table.has("courant") || !table.has("dt")) return;
   // An override replaces the file's choice; within one place the two contradict each other.
@@ -159,6 +191,7 @@ SceneFile read_scene(InputFile& file) {
   SceneFile result;
   mpm::Scene& scene = result.scene;
   TomlReader root(file);
+  root.expect("chart");  // read_chart.hpp
   read_general(root.table("scene"), scene);
   read_domain(root.table("domain"), scene);
   for (const TomlReader& table : root.tables("body", "a block of material"))

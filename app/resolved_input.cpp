@@ -39,11 +39,14 @@ std::string pair(const std::array<double, 2>& x) {
 std::string wall(const Wall& w) {
   switch (w.kind) {
     case Wall::Kind::no_slip:
-      return toml_string("no_slip");
+      return w.speed == 0.0 ? toml_string("no_slip")
+                            : fmt::format("{{ speed = {} }}", number(w.speed));
     case Wall::Kind::slip:
       return toml_string("slip");
     case Wall::Kind::open:
       return toml_string("open");
+    case Wall::Kind::periodic:
+      return toml_string("periodic");
     case Wall::Kind::friction:
       break;
   }
@@ -77,6 +80,15 @@ std::string law_table(const LawSpec& spec) {
                 fmt::format("{}{}", derived ? "derived: " : "", unit_and_doc(parameter)));
   }
   return out;
+}
+
+std::string shape_lines(const mpm::Body& body) {
+  if (!body.disc)
+    return line("shape", toml_string("box")) + line("origin", pair(body.origin), "m") +
+           line("size", pair(body.size), "m");
+  return line("shape", toml_string("disc")) + line("centre", pair(body.disc->centre), "m") +
+         line("radius", number(body.disc->radius), "m") +
+         line("hole", number(body.disc->hole), "m, radius of the hole");
 }
 
 std::string initial_table(const mpm::Body& body) {
@@ -131,24 +143,27 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
          line("left", wall(scene.left)) + line("right", wall(scene.right)) +
          line("top", wall(scene.top));
   for (const mpm::Body& body : scene.bodies) {
-    out += "\n[[body]]\n" + line("name", toml_string(body.name)) +
-           line("shape", toml_string("box")) + line("origin", pair(body.origin), "m") +
-           line("size", pair(body.size), "m") + line("velocity", pair(body.velocity), "m/s") +
-           line("spin", number(body.spin), "rad/s");
+    out += "\n[[body]]\n" + line("name", toml_string(body.name)) + shape_lines(body) +
+           line("velocity", pair(body.velocity), "m/s") + line("spin", number(body.spin), "rad/s");
     out += initial_table(body) + law_table(body.law);
   }
   out += "\n[grid]\n" + line("h", number(scene.h), "m") +
          line("points_per_cell", std::to_string(scene.points_per_cell)) +
-         line("kernel", toml_string(scene.kernel == mpm::Kernel::cubic ? "cubic" : "quadratic"));
+         line("kernel", toml_string(mpm::name_of(scene.kernel)));
   out +=
-      "\n[step]\n" +
-      line("transfer", toml_string(mpm::transfer_names[static_cast<std::size_t>(scene.transfer)])) +
+      "\n[step]\n" + line("transfer", toml_string(mpm::name_of(scene.transfer))) +
       (scene.transfer == mpm::Transfer::relaxed
            ? line("relaxation_time",
                   number(scene.relaxation_time.value_or(mpm::default_relaxation_time(scene))), "s")
            : "") +
       (scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm
            ? line("order", std::to_string(scene.order), "1 is pic")
+           : "") +
+      line("viscosity",
+           toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
+      (scene.viscosity == mpm::Viscosity::implicit_solve
+           ? line("viscosity_tolerance", number(scene.viscosity_tolerance),
+                  "of the velocity change")
            : "") +
       (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
                 : line("courant", number(scene.courant), "of the largest stable step"));

@@ -59,7 +59,8 @@ std::vector<std::string> series_columns() {
           "transfer_loss_J_per_m",
           "wall_loss_J_per_m",
           "energy_residual_J_per_m",
-          "outflow_kg_per_m"};
+          "outflow_kg_per_m",
+          "angular_momentum"};
 }
 
 std::vector<double> series_values(const mpm::SeriesRow& row) {
@@ -82,7 +83,8 @@ std::vector<double> series_values(const mpm::SeriesRow& row) {
           row.transfer_loss_J_per_m,
           row.wall_loss_J_per_m,
           row.energy_residual_J_per_m,
-          row.outflow_kg_per_m};
+          row.outflow_kg_per_m,
+          row.angular_momentum};
 }
 
 Usage usage() {
@@ -173,6 +175,7 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["kinetic_J_per_m"] = last.kinetic_J_per_m;
   s["peak_kinetic_J_per_m"] = record.peak_kinetic_J_per_m;
   s["potential_drop_J_per_m"] = record.initial_potential_J_per_m - last.potential_J_per_m;
+  s["angular_momentum"] = last.angular_momentum;
   s["elastic_J_per_m"] = last.elastic_J_per_m;
   s["dissipated_J_per_m"] = last.dissipated_J_per_m;
   s["transfer_loss_J_per_m"] = last.transfer_loss_J_per_m;
@@ -183,9 +186,14 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["cpu_s"] = record.cpu_s + spent.cpu_s;
   s["point_steps_per_s"] = static_cast<double>(simulation.point_steps()) / wall;
   s["threads"] = counters.threads;
+  s["state_memory_MB"] = counters.memory_MB;
   s["peak_memory_MB"] = spent.peak_memory_MB;
   s["wall_corrections"] = counters.wall_corrections;
   s["sorts"] = counters.sorts;
+  if (simulation.scene().viscosity == mpm::Viscosity::implicit_solve) {
+    s["newton_iterations"] = counters.newton_iterations;
+    s["cg_iterations"] = counters.cg_iterations;
+  }
   s["sessions"] = record.sessions;
   s["warnings"] = facts.warnings;
   s["input"] = to_json(facts.input);

@@ -274,7 +274,7 @@ ExitCode Run::finish() {
   if (lost != 0) return stop_at_failure(fmt::format("{} points have been lost", lost));
   tell_warnings();
   write_profile();
-  const bool drawn = simulation_.point_count() > 0 && write_picture();
+  const bool drawn = request_.picture && simulation_.point_count() > 0 && write_picture();
   write_summary("done", "");
   std::error_code ignored;
   fs::remove(folder_.checkpoint(), ignored);  // of an interruption that is made good

@@ -15,6 +15,7 @@ struct RunRequest {
   int threads = 0;               ///< 0: all cores
   std::uint64_t seed = 0;        ///< recorded
   bool resume = false;           ///< continue from the folder's checkpoint
+  bool picture = true;           ///< draw final.svg
   bool quiet = false;            ///< nothing but errors
   bool json = false;             ///< progress and outcome as JSON lines
 };

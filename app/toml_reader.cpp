@@ -136,17 +136,61 @@ std::size_t TomlReader::choice(std::string_view key, const std::vector<std::stri
   expect(key);
   const toml::node* node = get(key);
   if (node == nullptr) return fallback;
-  const auto* value = node->as_string();
+  return position(*node, path_of(key), words).value_or(fallback);
+}
+
+std::optional<std::size_t> TomlReader::position(const toml::node& node, std::string_view at,
+                                                const std::vector<std::string_view>& words) {
+  const auto* value = node.as_string();
   if (value != nullptr) {
     const auto found = std::find(words.begin(), words.end(), value->get());
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
   }
   const std::string near = value == nullptr ? "" : nearest_name(value->get(), words);
-  report(key, fmt::format("{} must be {}\"{}\"; got {}{}", path_of(key),
-                          words.size() == 1 ? "" : "one of ", fmt::join(words, "\", \""),
-                          describe(*node),
-                          near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
-  return fallback;
+  file_->report(at,
+                fmt::format("{} must be {}\"{}\"; got {}{}", at, words.size() == 1 ? "" : "one of ",
+                            fmt::join(words, "\", \""), describe(node),
+                            near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
+  return {};
+}
+
+std::optional<std::vector<std::size_t>> TomlReader::choices(
+    std::string_view key, const std::vector<std::string_view>& words) {
+  expect(key);
+  const toml::node* node = get(key);
+  if (node == nullptr) return {};
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->empty()) {
+    wrong_type(key, fmt::format("a list of \"{}\"", fmt::join(words, "\", \"")));
+    return {};
+  }
+  std::vector<std::size_t> values;
+  for (std::size_t i = 0; i < list->size(); ++i)
+    values.push_back(
+        position(*list->get(i), fmt::format("{}[{}]", path_of(key), i), words).value_or(0));
+  return values;
+}
+
+std::vector<double> TomlReader::checked_list(const toml::array& list, const NumberKey& key) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    values.push_back(
+        checked(*list.get(i), fmt::format("{}[{}]", path_of(key.key), i), key).value_or(nan));
+  return values;
+}
+
+std::optional<std::vector<double>> TomlReader::number_list(const NumberKey& key) {
+  expect(key.key);
+  const toml::node* node = get(key.key);
+  if (node == nullptr) return {};
+  const toml::array* list = node->as_array();
+  if (list == nullptr || list->empty()) {
+    wrong_type(key.key, fmt::format("a list of numbers{}{}",
+                                    key.unit == "-" ? "" : fmt::format(" in {}", key.unit),
+                                    doc_of(key.doc)));
+    return {};
+  }
+  return checked_list(*list, key);
 }
 
 std::optional<std::vector<double>> TomlReader::numbers(const NumberKey& key, std::size_t count) {
@@ -160,11 +204,7 @@ std::optional<std::vector<double>> TomlReader::numbers(const NumberKey& key, std
                                     doc_of(key.doc)));
     return {};
   }
-  std::vector<double> values;
-  for (std::size_t i = 0; i < count; ++i)
-    values.push_back(
-        checked(*list->get(i), fmt::format("{}[{}]", path_of(key.key), i), key).value_or(nan));
-  return values;
+  return checked_list(*list, key);
 }
 
 std::array<double, 2> TomlReader::pair(const NumberKey& key,

@@ -49,6 +49,11 @@ class TomlReader {
   /// [x, y], each in the key's range.
   std::array<double, 2> pair(const NumberKey& key,
                              std::optional<std::array<double, 2>> fallback = {});
+  /// A list of at least one finite number.
+  std::optional<std::vector<double>> number_list(const NumberKey& key);
+  /// A list of at least one of several words, as their positions.
+  std::optional<std::vector<std::size_t>> choices(std::string_view key,
+                                                  const std::vector<std::string_view>& words);
   /// A list of exactly `count` finite numbers.
   std::optional<std::vector<double>> numbers(const NumberKey& key, std::size_t count);
 
@@ -72,6 +77,9 @@ class TomlReader {
         table_(table),
         path_(std::move(path)),
         broken_(broken) {}
+  std::optional<std::size_t> position(const toml::node& node, std::string_view at,
+                                      const std::vector<std::string_view>& words);
+  std::vector<double> checked_list(const toml::array& list, const NumberKey& key);
   void wrong_type(std::string_view key, std::string_view expected);
   void missing(std::string_view key, std::string_view expected);
   /// The number at a path if it is one within range; reports it otherwise.

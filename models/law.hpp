@@ -74,6 +74,7 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 ///   modulus(P, σ, state, ρ)          P-wave modulus ρc² [Pa]
 ///   viscosity(P, σ, ρ, D)            shear viscosity that limits an explicit step [Pa·s]
 ///   stored_energy(P, σ, state, ρ)    recoverable energy per current volume [J/m³]
+///   elastic_volume_strain(P, σ, state, ρ)  −∫dp/K from p = 0 (or where contact is made) [-]
 ///   density_at(P, p, ocr)            ρ at rest under pressure p [kg/m³]
 ///   initial(P, conditions)           InitialPoint; throws InputError
 template <class L>
@@ -96,6 +97,7 @@ concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
   { L::modulus(P, stress, state, x) } -> std::same_as<double>;
   { L::viscosity(P, stress, x, stress) } -> std::same_as<double>;
   { L::stored_energy(P, stress, state, x) } -> std::same_as<double>;
+  { L::elastic_volume_strain(P, stress, state, x) } -> std::same_as<double>;
   { L::density_at(P, x, x) } -> std::same_as<double>;
   { L::initial(P, given) } -> std::same_as<InitialPoint>;
 };

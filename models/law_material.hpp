@@ -54,6 +54,35 @@ class LawMaterial final : public Material {
     }
   }
 
+  void elastic_volume_strain(const Batch& batch, double* strain) const override {
+    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+      const auto point = load_point<Pack>(batch, i);
+      L::elastic_volume_strain(packed_, point.stress, point.state, load<Pack>(batch.density + i))
+          .store_unaligned(strain + i);
+    }
+  }
+
+  void viscosity(const Batch& batch, double* eta, double* thinning) const override {
+    // a central difference in ln γ̇: its error is δ²/6 of the third derivative, of order one
+    const double delta = 1e-4;
+    const Pack inv_dt(1.0 / batch.dt);
+    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+      const auto point = load_point<Pack>(batch, i);
+      const Pack density = load<Pack>(batch.density + i);
+      Sym<Pack, 4> D;
+      for (int k = 0; k < 4; ++k) D[k] = inv_dt * load<Pack>(batch.strain[index(k)] + i);
+      const auto at = [&](double factor) {
+        return Pack(L::viscosity(packed_, point.stress, density, Pack(factor) * D));
+      };
+      const Pack here = at(1.0);
+      const Pack change = at(1.0 + delta) - at(1.0 - delta);
+      const auto none = here == Pack(0.0);
+      here.store_unaligned(eta + i);
+      select(none, Pack(0.0), Pack(-change / (select(none, Pack(1.0), here) * Pack(2.0 * delta))))
+          .store_unaligned(thinning + i);
+    }
+  }
+
   InitialPoint initial(const InitialConditions& given) const override {
     return L::initial(plain_, given);
   }

@@ -73,6 +73,14 @@ class Material {
   /// ρc² [Pa] of each point as it is.
   virtual void modulus(const Batch& batch, double* rho_c2) const = 0;
 
+  /// Elastic volume strain of each point, extension positive, −∫dp/K from where it carries no
+  /// pressure [-]; 0 for one that carries none.
+  virtual void elastic_volume_strain(const Batch& batch, double* strain) const = 0;
+
+  /// Shear viscosity η [Pa s] of each point at the batch's density and strain rate strain/dt, and
+  /// how it thins, −d ln η/d ln γ̇ (0 where η = 0). For laws without stress memory: s = 2ηD′.
+  virtual void viscosity(const Batch& batch, double* eta, double* thinning) const = 0;
+
   /// Throws InputError if the law cannot start from these conditions.
   virtual InitialPoint initial(const InitialConditions& given) const = 0;
 

@@ -132,6 +132,17 @@ struct ModifiedCamClay {
     return select(apart, T(0.0), T(compression_energy + contract(s, s) / (T(4.0) * G)));
   }
 
+  /// −κ* ln(p̃/p̃_contact), MCC-4, from where contact is made; 0 for a point that is separated.
+  template <class T, int N>
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
+                                 const T& density) {
+    using std::log;
+    const T contact = contact_pressure(P);
+    const T p = pressure(stress) + P.p_shift;
+    const T bearing = select(at[i_rho_sep] > T(0.0) || p < contact, contact, p);
+    return -kappa_star(P, specific_volume(P, density)) * log(bearing / contact);
+  }
+
   /// At rest under p with p_c = ocr p, on the law's own lines; needs Γ or N.
   static double density_at(const Params<double>& P, double p, double ocr);
 

@@ -64,6 +64,13 @@ T compression_energy(const P& par, const T& density) {
   return select(r < T(1.0), T(0.0), T(par.K * (r * log(r) - r + T(1.0))));
 }
 
+/// −∫dp/K with K = K_0 + p of MUI-1 (K_0: at p = 0): ln(ρ0/ρ) in contact, 0 for a loose point.
+template <class P, class T>
+T elastic_volume_strain(const P& par, const T& p) {
+  using std::log;
+  return -log(T(1.0) + p / par.K);
+}
+
 template <class P>
 double density_at(const P& par, double p) {
   return par.rho_0 * (1.0 + p / par.K);
@@ -216,6 +223,12 @@ struct MuIElastoviscoplastic {
     return mu_i::compression_energy(P, density) + contract(s, s) / (T(4.0) * P.G);
   }
 
+  template <class T, int N>
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                                 const T&) {
+    return mu_i::elastic_volume_strain(P, pressure(stress));
+  }
+
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {
     return mu_i::density_at(P, p);
   }
@@ -326,6 +339,12 @@ struct MuIRegularised {
   template <class T, int N>
   static T stored_energy(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density) {
     return mu_i::compression_energy(P, density);
+  }
+
+  template <class T, int N>
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                                 const T&) {
+    return mu_i::elastic_volume_strain(P, pressure(stress));
   }
 
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {

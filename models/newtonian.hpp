@@ -108,6 +108,14 @@ struct Newtonian {
     return tension == Tension::cut_off ? select(density < P.rho_0, T(0.0), W) : W;
   }
 
+  /// ln(ρ0/ρ) with p = K[(ρ/ρ0)^α − 1]; 0 where tension is cut off
+  template <class T, int N>
+  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                                 const T&) {
+    using std::log;
+    return -log(T(1.0) + pressure(stress) / P.K) / P.alpha;
+  }
+
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {
     return P.rho_0 * std::exp(std::log1p(p / P.K) / P.alpha);
   }

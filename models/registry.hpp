@@ -7,6 +7,7 @@
 #include "models/law_material.hpp"
 #include "models/modified_cam_clay.hpp"
 #include "models/mu_i.hpp"
+#include "models/neo_hookean.hpp"
 #include "models/newtonian.hpp"
 
 namespace repose {
@@ -15,7 +16,7 @@ namespace repose {
 using AllLaws =
     std::tuple<ModifiedCamClay<Compression::ln_v_ln_p>, ModifiedCamClay<Compression::v_ln_p>,
                MuIElastoviscoplastic, MuIRegularised, Newtonian<Tension::cut_off>,
-               Newtonian<Tension::carried>>;
+               Newtonian<Tension::carried>, NeoHookean>;
 
 /// A law as an input file writes it.
 struct LawSpec {

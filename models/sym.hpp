@@ -51,7 +51,7 @@ T trace(const Sym<T, N>& a) {
 /// tr(a)/3, exact where the three are equal (their sum over 3 is not: rest would drift).
 template <class T, int N>
 T mean(const Sym<T, N>& a) {
-  return a[0] + ((a[1] - a[0]) + (a[2] - a[0])) * T(1.0 / 3.0);
+  return a[0] + ((a[1] - a[0]) + (a[2] - a[0])) / T(3.0);
 }
 
 /// a − (tr a/3) I

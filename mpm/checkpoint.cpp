@@ -12,7 +12,7 @@
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 1;
+constexpr std::int64_t format_version = 2;
 
 /// An open HDF5 object, closed by its own function.
 class Handle {
@@ -92,6 +92,8 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   whole(s.point_steps);
   whole(s.sorts);
   whole(s.wall_corrections);
+  whole(s.newton_iterations);
+  whole(s.cg_iterations);
 }
 
 /// Turns HDF5's own error printing off for a while.

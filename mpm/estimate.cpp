@@ -81,8 +81,8 @@ Estimate estimate(const Scene& scene, int threads) {
   for (const std::string& warning : simulation.warnings()) e.warnings.push_back(warning);
   if (!scene.dt && e.steps > 1e7)
     e.warnings.push_back(fmt::format(
-        "the stable step of {:.3g} s means {:.3g} steps: a regularised viscosity limits it (form = "
-        "\"elastoviscoplastic\" has no such limit, or set step.dt knowingly)",
+        "the stable step of {:.3g} s means {:.3g} steps: a regularised viscosity limits it "
+        "(step.viscosity = \"implicit\" and form = \"elastoviscoplastic\" have no such limit)",
         typical, e.steps));
   return e;
 }

@@ -64,7 +64,7 @@ void Simulation::Impl::extend_velocity() {
   const std::size_t n = grid.node_blocks.size();
   remainder_.resize(n);
   through_points_.resize(n);
-  extension_.assign(n, NodeVelocity{});
+  extension_.assign(n, NodeField{});
   for_each_block(arena, n, [&](std::size_t k) {
     const NodeBlock& nb = grid.node_blocks[k];
     remainder_[k].x = after_forces ? nb.vx : nb.ux;
@@ -100,19 +100,19 @@ void Simulation::Impl::extend_velocity() {
     });
     mirror(mirrored_, through_points_);
     for_each_block(arena, n, [&](std::size_t k) {
-      const auto add = [&](auto NodeVelocity::*c) {
+      const auto add = [&](auto NodeField::*c) {
         for (std::size_t i = 0; i < block_nodes; ++i) {
           (remainder_[k].*c)[i] -= (through_points_[k].*c)[i];
           (extension_[k].*c)[i] += (remainder_[k].*c)[i];
         }
       };
-      add(&NodeVelocity::x);
-      add(&NodeVelocity::y);
+      add(&NodeField::x);
+      add(&NodeField::y);
     });
   }
   for_each_block(arena, n, [&](std::size_t k) {
     NodeBlock& nb = grid.node_blocks[k];
-    const NodeVelocity& e = extension_[k];
+    const NodeField& e = extension_[k];
     if (!after_forces) {
       nb.ux = e.x;
       nb.uy = e.y;

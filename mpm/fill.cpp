@@ -33,11 +33,22 @@ void append(PointSet& points, double x, double y, const Body& body, const Initia
   points.field[RHO].push_back(at.density);
   points.field[MASS].push_back(at.density * area);
   for (std::size_t k = 0; k < at.state.size(); ++k) points.field[STATE + k].push_back(at.state[k]);
+  if (points.splits_stress()) {
+    points.field[points.force_stress[0]].push_back(mean(at.stress));
+    points.field[points.force_stress[2]].push_back(0.0);
+  }
   if (points.affine != LXX)
     for (std::size_t k = 0; k < affine_fields; ++k)
       points.field[points.affine + k].push_back(points.field[LXX + k].back());
   points.id.push_back(id);
   ++points.count;
+}
+
+/// In the box, or in the disc and not in its hole.
+bool within_shape(const Body& body, double x, double y) {
+  if (!body.disc) return true;
+  const double r = std::hypot(x - body.disc->centre[0], y - body.disc->centre[1]);
+  return r >= body.disc->hole && r < body.disc->radius;
 }
 
 }  // namespace
@@ -63,6 +74,10 @@ PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
   points.material =
       within("law", [&] { return std::shared_ptr<const Material>(make_material(body.law)); });
   points.fields = STATE + points.material->law().state.size();
+  if (scene.viscosity == Viscosity::implicit_solve && !points.material->law().has_stress_memory) {
+    points.force_stress = {points.fields, points.fields, points.fields + 1};
+    points.fields += split_fields;
+  }
   if (scene.transfer == Transfer::relaxed) {
     points.affine = points.fields;
     points.fields += affine_fields;
@@ -96,9 +111,11 @@ PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
       });
       at = initial(here);
     }
-    for (std::int64_t i = 0; i < nx; ++i)
-      append(points, body.origin[0] + (static_cast<double>(i) + 0.5) * dx, y, body, at, dx * dy,
-             first_id + j * nx + i);
+    for (std::int64_t i = 0; i < nx; ++i) {
+      const double x = body.origin[0] + (static_cast<double>(i) + 0.5) * dx;
+      if (!within_shape(body, x, y)) continue;
+      append(points, x, y, body, at, dx * dy, first_id + static_cast<std::int64_t>(points.count));
+    }
   }
   // solid depths are measured at the loosest density the law knows by name, else as filled
   points.rho_0 = points.field[RHO].empty() ? 0.0 : points.field[RHO].back();

@@ -31,8 +31,8 @@ constexpr int tile_rows = block_ny + 5;
 constexpr int tile_nodes = tile_stride * tile_rows;
 static_assert(tile_stride == tile_margin_x + block_nx + 4);
 
-/// What points hand to nodes.
-enum TileChannel : std::size_t { T_MASS, T_PX, T_PY, T_FX, T_FY, tile_channels };
+/// What points hand to nodes; T_ELASTIC, the last, only where pressures are averaged.
+enum TileChannel : std::size_t { T_MASS, T_PX, T_PY, T_FX, T_FY, T_ELASTIC, tile_channels };
 struct alignas(64) Tile : std::array<std::array<double, tile_nodes>, tile_channels> {};
 
 /// The points of one block, all bodies.
@@ -49,15 +49,18 @@ struct alignas(64) NodeBlock {
   std::array<double, block_nodes> mirrored_mass{};
   std::array<double, block_nodes> ux{}, uy{};  ///< velocity before forces (from the points) [m/s]
   std::array<double, block_nodes> vx{}, vy{};  ///< velocity after forces, then after walls [m/s]
+  /// Mass average of the points' elastic volume strain (pressure averaging only) [-]
+  std::array<double, block_nodes> elastic{};
   int bx = 0, by = 0;
   std::array<std::int32_t, 9> point_block{};  ///< the point blocks around; −1 where there is none
 };
 
-/// A velocity at the nodes of every node block, in their order.
-struct alignas(64) NodeVelocity {
+/// A vector at every node of a block.
+struct alignas(64) NodeField {
   std::array<double, block_nodes> x{}, y{};
 };
-using NodeField = std::vector<NodeVelocity>;
+/// One per node block of the grid, in its order.
+using NodeVector = std::vector<NodeField>;
 
 class Grid {
  public:

@@ -19,7 +19,7 @@ struct Ledger {
   double start_elastic = 0.0;
   double stress_work = 0.0;    ///< ∫ σ:D dV dt at the points
   double transfer_loss = 0.0;  ///< kinetic energy: points → nodes and nodes → points
-  double wall_loss = 0.0;      ///< kinetic energy taken by walls
+  double wall_loss = 0.0;      ///< taken by walls, less what moving walls put in
   double outflow = 0.0;        ///< kinetic + potential + elastic energy carried out
   double outflow_elastic = 0.0;
   double outflow_mass = 0.0;  ///< [kg/m]

@@ -8,9 +8,10 @@
 namespace repose::mpm {
 namespace {
 
-constexpr double max_points = 1e8;  ///< about 25 GB
-constexpr double max_cells = 1e9;   ///< of the box: half a gigabyte of tables
-constexpr double min_cells = 3;     ///< across the box
+constexpr double max_points = 1e8;        ///< about 25 GB
+constexpr double max_cells = 1e9;         ///< of the box: half a gigabyte of tables
+constexpr double min_cells = 3;           ///< across the box
+constexpr double min_periodic_cells = 5;  ///< no node is its own image
 constexpr double max_frames = 1e6;
 constexpr double max_rows = 1e7;
 constexpr double max_order = 100;
@@ -42,6 +43,21 @@ void require(double x, const Range& range, const char* key, const char* what) {
       key, std::string(what) + " = " + number(x) + " is out of range: must be " + to_string(range));
 }
 
+void check_periodic(const Scene& scene) {
+  const auto periodic = [](const Wall& wall) { return wall.kind == Wall::Kind::periodic; };
+  for (const auto& [wall, key] :
+       {std::pair{scene.floor, "domain.floor"}, {scene.top, "domain.top"}})
+    if (periodic(wall)) throw InputError(key, "only left and right can be periodic");
+  if (periodic(scene.left) != periodic(scene.right))
+    throw InputError(periodic(scene.left) ? "domain.right" : "domain.left",
+                     "where one of left and right is periodic the other must be so too");
+  const double cells = scene.domain[0] / scene.h;
+  if (periodic(scene.left) && cells < min_periodic_cells - 0.5)
+    throw InputError("grid.h", "a periodic box must be at least " + number(min_periodic_cells) +
+                                   " cells wide, and this has " + number(std::round(cells)) +
+                                   ": h <= " + number(scene.domain[0] / min_periodic_cells) + " m");
+}
+
 void check_numbers(const Scene& scene) {
   require(scene.end_time, not_negative, "scene.end_time", "end_time");
   require(scene.gravity, not_negative, "scene.gravity", "gravity");
@@ -50,8 +66,12 @@ void check_numbers(const Scene& scene) {
   for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
                                   {scene.left, "domain.left"},
                                   {scene.right, "domain.right"},
-                                  {scene.top, "domain.top"}})
+                                  {scene.top, "domain.top"}}) {
     if (wall.kind == Wall::Kind::friction) require(wall.friction, not_negative, key, "friction");
+    require(wall.speed, {}, key, "speed");
+    if (wall.speed != 0.0 && wall.kind != Wall::Kind::no_slip)
+      throw InputError(key, "only a no-slip wall can drag the material along: leave out its speed");
+  }
   require(scene.h, positive, "grid.h", "h");
   const int edge = scene.points_per_cell > 0 ? points_per_edge(scene) : 0;
   if (scene.points_per_cell > 100 || edge < 1 || edge * edge != scene.points_per_cell)
@@ -59,7 +79,10 @@ void check_numbers(const Scene& scene) {
                      "points_per_cell = " + std::to_string(scene.points_per_cell) +
                          " must be a square number from 1 to 100: 1, 4, 9, 16, ...");
   require(scene.order, {1.0, max_order, false, false}, "step.order", "order");
-  require(scene.courant, {0.0, 1.0, true, false}, "step.courant", "courant");
+  require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
+  require(scene.viscosity_tolerance, {0.0, 0.1, true, false}, "step.viscosity_tolerance",
+          "viscosity_tolerance");
+  require(scene.courant, courant_range, "step.courant", "courant");
   if (scene.dt) require(*scene.dt, positive, "step.dt", "dt");
   require(scene.frame_interval, not_negative, "output.frame_interval", "frame_interval");
   require(scene.series_interval, not_negative, "output.series_interval", "series_interval");
@@ -195,6 +218,26 @@ void check_geometry(const Scene& scene) {
     }
 }
 
+void check_discs(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (!body.disc) continue;
+    const Disc& disc = *body.disc;
+    if (!(disc.hole >= 0.0 && disc.hole < disc.radius))
+      throw InputError(path_of(i, "hole"),
+                       "hole = " + number(disc.hole) +
+                           " is out of range: must be [0, radius = " + number(disc.radius) + ")");
+    const double thickness = disc.radius - disc.hole;
+    if (thickness < 2.0 * point_spacing(scene))
+      throw InputError(path_of(i, "radius"), "the disc is " + number(thickness) +
+                                                 " m thick, less than two points " +
+                                                 number(point_spacing(scene)) + " m apart");
+    if (body.lithostatic)
+      throw InputError(path_of(i, "initial.lithostatic"),
+                       "a disc has no level surface: only a box can be lithostatic");
+  }
+}
+
 void check_overlap(const Scene& scene) {
   const auto name = [&](std::size_t i) {
     const std::string& given = scene.bodies[i].name;
@@ -215,6 +258,53 @@ void check_overlap(const Scene& scene) {
                                                  "] m, y = [" + number(from[1]) + ", " +
                                                  number(to[1]) + "] m");
     }
+}
+
+/// What an extended velocity adds vanishes at walls at rest and knows no images across an edge.
+void check_extension(const Scene& scene) {
+  if (scene.transfer != Transfer::xpic && scene.transfer != Transfer::fmpm) return;
+  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
+                                  {scene.left, "domain.left"},
+                                  {scene.right, "domain.right"},
+                                  {scene.top, "domain.top"}})
+    if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
+      throw InputError(key,
+                       "a periodic edge or a wall that moves does not go with step.transfer = "
+                       "\"" +
+                           std::string(name_of(scene.transfer)) +
+                           "\" yet; any other transfer does");
+}
+
+/// An implicit viscosity has something to solve for, among fields that its walls admit, and its
+/// strain rates are those of the points: the affine gradient of the nodes' own velocity.
+void check_viscosity(const Scene& scene) {
+  if (scene.viscosity == Viscosity::explicit_force) return;
+  if (std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                  [](const Body& body) { return find_law(body.law).has_stress_memory; }))
+    throw InputError(
+        "step.viscosity",
+        "viscosity = \"implicit\" needs a body whose law is a viscosity: newtonian, or "
+        "mu_i with form = \"regularised\"");
+  if (scene.transfer == Transfer::tpic || scene.transfer == Transfer::xpic ||
+      scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer",
+                     "transfer = \"" + std::string(name_of(scene.transfer)) +
+                         "\" does not go with step.viscosity = \"implicit\": the strain rates that "
+                         "it solves for are the affine gradients of \"relaxed\", \"apic\", "
+                         "\"aflip\", \"flip\" and \"pic\"");
+  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
+                                  {scene.left, "domain.left"},
+                                  {scene.right, "domain.right"},
+                                  {scene.top, "domain.top"}})
+    if (wall.kind == Wall::Kind::friction)
+      throw InputError(key,
+                       "a wall with friction does not go with step.viscosity = \"implicit\": its "
+                       "limit on the shear is not part of the solve; \"no_slip\", \"slip\" and "
+                       "\"open\" do");
+    else if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
+      throw InputError(key,
+                       "a periodic edge or a wall that moves does not go with step.viscosity = "
+                       "\"implicit\" yet; \"no_slip\" at rest, \"slip\" and \"open\" do");
 }
 
 /// What the material says to the state at the base of a lithostatic body.
@@ -269,6 +359,14 @@ std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body) 
   return {std::llround(body.size[0] / spacing), std::llround(body.size[1] / spacing)};
 }
 
+void set_disc(Body& body, const Disc& disc) {
+  body.disc = disc;
+  for (std::size_t k = 0; k < 2; ++k) {
+    body.origin[k] = disc.centre[k] - disc.radius;
+    body.size[k] = 2.0 * disc.radius;
+  }
+}
+
 bool raise_top_to_cells(Scene& scene) {
   if (is_multiple(scene.domain[1], scene.h)) return false;
   // 12 digits: 0.575, not 0.5750000000000001
@@ -279,9 +377,13 @@ bool raise_top_to_cells(Scene& scene) {
 void validate(const Scene& scene) {
   check_numbers(scene);
   check_cells(scene);
+  check_periodic(scene);
   check_geometry(scene);
+  check_discs(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+  check_extension(scene);
+  check_viscosity(scene);
 }
 
 }  // namespace repose::mpm

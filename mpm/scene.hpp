@@ -20,16 +20,26 @@ struct Wall {
     slip,      ///< a plane of symmetry: no motion through it nor away from it, free motion along it
     friction,  ///< unilateral Coulomb contact: no tension, |shear| <= friction × pressure
     open,      ///< material that crosses leaves the simulation and is counted as outflow
+    periodic,  ///< left and right only, both: what crosses comes in on the other side
   };
   Kind kind = Kind::slip;
   double friction = 0.0;  ///< Coulomb coefficient, for Kind::friction
+  double speed = 0.0;     ///< of the wall along itself, +x or +y, for Kind::no_slip [m/s]
+};
+
+/// A disc of points; with a hole, a ring.
+struct Disc {
+  std::array<double, 2> centre{};  ///< [m]
+  double radius = 0.0;             ///< [m]
+  double hole = 0.0;               ///< radius of the hole [m]
 };
 
 /// A block of one material at rest or in uniform motion.
 struct Body {
   std::string name;
-  std::array<double, 2> origin{};    ///< lower left corner of the box [m]
-  std::array<double, 2> size{};      ///< [m]
+  std::array<double, 2> origin{};  ///< lower left corner of the box [m]
+  std::array<double, 2> size{};    ///< [m]
+  std::optional<Disc> disc;        ///< only the points in it; origin and size bound it: set_disc()
   std::array<double, 2> velocity{};  ///< initial velocity [m/s]
   double spin = 0.0;                 ///< initial angular velocity about the body's centre [rad/s]
   LawSpec law;
@@ -39,6 +49,11 @@ struct Body {
 };
 
 enum class Kernel { quadratic, cubic };
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 2> kernel_names{"quadratic", "cubic"};
+constexpr std::string_view name_of(Kernel kernel) {
+  return kernel_names[static_cast<std::size_t>(kernel)];
+}
 
 /// How velocities travel between points and grid; transfer.hpp has the formulas.
 enum class Transfer {
@@ -55,6 +70,21 @@ enum class Transfer {
 /// Their names in scene files, in the same order.
 constexpr std::array<std::string_view, 8> transfer_names{"pic",     "flip", "apic", "aflip",
                                                          "relaxed", "tpic", "xpic", "fmpm"};
+constexpr std::string_view name_of(Transfer transfer) {
+  return transfer_names[static_cast<std::size_t>(transfer)];
+}
+
+/// How the viscous stress of laws without stress memory acts.
+enum class Viscosity {
+  explicit_force,  ///< as a force of the stress from the last step; limits the step to 0.9 ρh²/4η
+  implicit_solve,  ///< solved for at the end of the step (implicit_viscosity.hpp); no limit
+};
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 2> viscosity_names{"explicit", "implicit"};
+
+/// Where a step has a chance to be stable: the bulk is, in two directions, up to 1.93/√2 = 1.36
+/// (cubic).
+inline constexpr repose::Range courant_range{0.0, 1.4, true, false};
 
 struct Scene {
   std::string name;
@@ -73,13 +103,21 @@ struct Scene {
   double h = 0.0;           ///< cell size [m]
   int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16
   Kernel kernel = Kernel::cubic;
-  Transfer transfer = Transfer::apic;
+  Transfer transfer = Transfer::relaxed;
   /// [s], for Transfer::relaxed; absent: default_relaxation_time()
   std::optional<double> relaxation_time;
   /// m of Transfer::xpic, k of Transfer::fmpm; 1 is pic. A step costs order − 1 more transfers.
   int order = 2;
+  /// c: the pressure noise of the points decays as e^{−cγ} in shear γ [-]; 0: no averaging. Of the
+  /// order of K/(ρ g H). See pressure_averaging.hpp.
+  double pressure_averaging = 0.0;
 
-  double courant = 0.4;      ///< Δt = courant · h/(c + |v|), if dt is absent
+  Viscosity viscosity = Viscosity::explicit_force;
+  /// Largest error of an implicit step's velocity, over the velocity that its forces bring
+  /// (root mean square by mass); implicit_viscosity.hpp says what it bounds.
+  double viscosity_tolerance = 1e-3;
+
+  double courant = 0.8;      ///< Δt = courant · h/(c + |v|), if dt is absent; see step_size.hpp
   std::optional<double> dt;  ///< fixed step [s]
 
   double frame_interval = 0.0;   ///< [s]; 0: no frames
@@ -93,6 +131,9 @@ double point_spacing(const Scene& scene);
 /// enough to quieten what the grid cannot carry, long enough that what it carries loses less than
 /// in APIC at any stable step; docs/transfers.md has the measurements. HUGE_VAL without gravity.
 double default_relaxation_time(const Scene& scene);
+
+/// Makes a body a disc: its origin and size become those of the square around it.
+void set_disc(Body& body, const Disc& disc);
 
 /// Points of a body along x and y: its size over point_spacing(), which validate() has found whole.
 std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body);

@@ -19,17 +19,29 @@ std::array<double, 2> gravity_vector(const Scene& scene) {
   return {scene.gravity * std::sin(angle), -scene.gravity * std::cos(angle)};
 }
 
+/// Velocity, gradient and affine velocity of points that have just been filled.
+void set_motion(PointSet& points, const std::function<PointMotion(double, double)>& motion) {
+  for (std::size_t s = 0; s < points.slots(); ++s) {
+    const PointMotion at = motion(points[X][s], points[Y][s]);
+    points[VX][s] = at.velocity[0];
+    points[VY][s] = at.velocity[1];
+    for (std::size_t k = 0; k < affine_fields; ++k)
+      points[LXX + k][s] = points[points.affine + k][s] = at.gradient[k];
+  }
+}
+
 int cells(double length, double h) { return static_cast<int>(std::llround(length / h)); }
 
 }  // namespace
 
-Simulation::Impl::Impl(const Scene& given, int thread_count)
+Simulation::Impl::Impl(const Scene& given, const Prescribed& by_program, int thread_count)
     : scene(given),
       gravity(gravity_vector(given)),
       walls{given.left, given.right, given.floor, given.top},
       grid(given.h, cells(given.domain[0], given.h), cells(given.domain[1], given.h)),
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
-      threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()) {
+      threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
+      prescribed(by_program) {
   std::int64_t next_id = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
@@ -41,6 +53,12 @@ Simulation::Impl::Impl(const Scene& given, int thread_count)
     next_id += static_cast<std::int64_t>(bodies.back().count);
     body_names.push_back(body.name.empty() ? fmt::format("body[{}]", b) : body.name);
     initial_height = std::max(initial_height, body.origin[1] + body.size[1]);
+  }
+  for (PointSet& points : bodies) {
+    if (prescribed.start) set_motion(points, prescribed.start);
+    if (!prescribed.acceleration) continue;
+    start_x.insert(start_x.end(), points.field[X].begin(), points.field[X].end());
+    start_y.insert(start_y.end(), points.field[Y].begin(), points.field[Y].end());
   }
   sort_if_needed();
   signals = initial_signals();
@@ -61,6 +79,11 @@ Simulation::Impl::Impl(const Scene& given, int thread_count)
     for (std::size_t s = 0; s < points.slots(); ++s)
       if (points.id[s] >= 0) mass += points[MASS][s];
   highest_energy = ledger.start - mass * lowest + 1e-9 * mass * signals.signal * signals.signal;
+  // the work of these has no bound
+  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
+  if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
+      drags(walls.right) || drags(walls.floor) || drags(walls.top))
+    highest_energy = HUGE_VAL;
 }
 
 Signals Simulation::Impl::initial_signals() const {
@@ -74,7 +97,7 @@ Signals Simulation::Impl::initial_signals() const {
     modulus.resize(zero.size());
     Batch batch = copy.batch(all);
     copy.material->modulus(batch, modulus.data());
-    if (!copy.material->law().has_stress_memory) {
+    if (!copy.material->law().has_stress_memory && !copy.splits_stress()) {
       batch.dt = 1.0;
       batch.strain.fill(zero.data());
       batch.viscosity = viscosity.data();
@@ -95,13 +118,21 @@ double Simulation::Impl::initial_power() const {
   double power = 0.0;
   for (const PointSet& points : bodies)
     for (std::size_t s = 0; s < points.slots(); ++s)
-      if (points.id[s] >= 0) power += power_of(points, s);
+      if (points.id[s] >= 0) power += power_of(points, s, 0.0);
   return power;
 }
 
-double Simulation::Impl::power_of(const PointSet& points, std::size_t s) const {
-  const double stress_power = points[SXX][s] * points[LXX][s] + points[SYY][s] * points[LYY][s] +
-                              points[SXY][s] * (points[LXY][s] + points[LYX][s]);
+double Simulation::Impl::power_of(const PointSet& points, std::size_t s, double dt) const {
+  const auto& stress = points.force_stress;
+  const double xx = points[LXX][s], xy = points[LXY][s], yx = points[LYX][s], yy = points[LYY][s];
+  double c_xx = dt * (xx * xx + xy * yx), c_yy = dt * (yy * yy + xy * yx), c = dt * (xx + yy);
+  if (!points.material->law().has_stress_memory) {
+    c_xx = c_yy = 0.5 * (c_xx + c_yy);
+    c = 0.0;
+  }
+  const double stress_power = points[stress[0]][s] * (xx - c_xx) +
+                              points[stress[1]][s] * (yy - c_yy) +
+                              points[stress[2]][s] * (1.0 - c) * (xy + yx);
   return points[MASS][s] *
          (gravity[0] * points[VX][s] + gravity[1] * points[VY][s] - stress_power / points[RHO][s]);
 }
@@ -114,7 +145,8 @@ void Simulation::Impl::remove_outflow() {
     for (std::size_t s = 0; s < points.slots(); ++s) {
       const double x = points[X][s];
       const double y = points[Y][s];
-      if (points.id[s] < 0 || (x >= 0.0 && x <= width && y >= 0.0 && y <= height)) continue;
+      const bool inside = walls.periodic() || (x >= 0.0 && x <= width);
+      if (points.id[s] < 0 || (inside && std::isfinite(x) && y >= 0.0 && y <= height)) continue;
       if (!std::isfinite(x) || !std::isfinite(y))  // no outflow, but a state saved after a failure
         throw NumericalFailure("step " + std::to_string(steps) +
                                " starts from a failed state: point " +
@@ -132,7 +164,7 @@ void Simulation::Impl::remove_outflow() {
       ledger.outflow_elastic += elastic;
       ledger.outflow_mass += m;
       ledger.kinetic -= kinetic;
-      ledger.power -= power_of(points, s);
+      ledger.power -= power_of(points, s, last_dt);
       points.id[s] = -1;
       --points.count;
     }
@@ -178,6 +210,9 @@ SeriesRow Simulation::Impl::diagnostics() {
   row.density_min = HUGE_VAL;
   row.density_max = 0.0;
   row.front_max_m = 0.0;
+  // Σ m (x × v) + m D (A_yx − A_xy): what the grid receives; Jiang et al. (2015), APIC
+  const double moment =
+      retention(0.0).affine ? scene.h * scene.h / (scene.kernel == Kernel::cubic ? 3.0 : 4.0) : 0.0;
   for (const PointSet& points : bodies)
     for (std::size_t s = 0; s < points.slots(); ++s) {
       if (points.id[s] < 0) continue;
@@ -185,6 +220,9 @@ SeriesRow Simulation::Impl::diagnostics() {
       row.mass_kg_per_m += m;
       row.momentum_x += m * points[VX][s];
       row.momentum_y += m * points[VY][s];
+      row.angular_momentum +=
+          m * (points[X][s] * points[VY][s] - points[Y][s] * points[VX][s] +
+               moment * (points[points.affine + 2][s] - points[points.affine + 1][s]));
       row.density_min = std::min(row.density_min, points[RHO][s]);
       row.density_max = std::max(row.density_max, points[RHO][s]);
       row.front_max_m = std::max(row.front_max_m, points[X][s]);
@@ -198,9 +236,11 @@ SeriesRow Simulation::Impl::diagnostics() {
   return row;
 }
 
-Simulation::Simulation(const Scene& scene, int threads) {
+Simulation::Simulation(const Scene& scene, int threads)
+    : Simulation(scene, Prescribed{}, threads) {}
+Simulation::Simulation(const Scene& scene, const Prescribed& prescribed, int threads) {
   validate(scene);
-  impl_ = std::make_unique<Impl>(scene, threads);
+  impl_ = std::make_unique<Impl>(scene, prescribed, threads);
 }
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -240,6 +280,12 @@ Simulation::Profile Simulation::profile() const {
     p.depth_m.push_back(deposit.depth[i]);
   }
   return p;
+}
+
+RestPressure Simulation::rest_pressure() const {
+  const Impl& s = *impl_;
+  const double h = s.grid.h();
+  return mpm::rest_pressure(s.bodies, h, h * s.grid.nx(), -s.gravity[1], 2.0 * h, 0.25);
 }
 
 Simulation::Snapshot Simulation::snapshot() const {
@@ -322,8 +368,8 @@ Simulation::Counters Simulation::counters() const {
   for (const PointSet& points : s.bodies)
     bytes += static_cast<double>(points.slots() *
                                  (points.fields * sizeof(double) + sizeof(std::int64_t)));
-  return {
-      s.steps > 0 ? s.dt_min : 0.0, s.dt_max, s.wall_corrections, s.sorts, bytes / 1e6, s.threads};
+  return {s.steps > 0 ? s.dt_min : 0.0, s.dt_max,        s.wall_corrections, s.sorts,
+          s.newton_iterations,          s.cg_iterations, bytes / 1e6,        s.threads};
 }
 
 std::string Simulation::Impl::describe(const PointSet& points, std::size_t body,

@@ -7,6 +7,8 @@
 #include <memory>
 
 #include "mpm/frame_writer.hpp"
+#include "mpm/prescribed.hpp"
+#include "mpm/rest_pressure.hpp"
 #include "mpm/scene.hpp"
 
 namespace repose::mpm {
@@ -24,8 +26,9 @@ struct SeriesRow {
   double wall_loss_J_per_m;        ///< taken by the walls: impact and friction
   double energy_residual_J_per_m;  ///< what the ledger does not account for (time integration)
   double mass_kg_per_m;
-  double outflow_kg_per_m;          ///< mass that has left through open edges
-  double momentum_x, momentum_y;    ///< [kg m/s per m]
+  double outflow_kg_per_m;        ///< mass that has left through open edges
+  double momentum_x, momentum_y;  ///< [kg m/s per m]
+  double angular_momentum;  ///< about the origin, the affine velocity included [kg m²/s per m]
   double density_min, density_max;  ///< [kg/m³]
   std::int64_t points_separated;    ///< points that carry no stress
 };
@@ -53,6 +56,8 @@ class Simulation {
  public:
   /// Fills the bodies with points. `threads` <= 0: all cores. Throws InputError (see validate()).
   explicit Simulation(const Scene& scene, int threads = 0);
+  /// The same with initial velocities and body accelerations of the program's own.
+  Simulation(const Scene& scene, const Prescribed& prescribed, int threads = 0);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
 
@@ -76,6 +81,10 @@ class Simulation {
   };
   Profile profile() const;
 
+  /// Pressure against overburden, for a deposit at rest (gravity along −y): points deeper than 2h
+  /// below the surface, where the deposit has at least a quarter of its greatest depth.
+  RestPressure rest_pressure() const;
+
   /// All points in a fixed order (their order of creation), for frames and pictures.
   struct Snapshot {
     std::vector<double> x_m, y_m, vx, vy, density, pressure_Pa, mises_Pa, sxx, syy, szz, sxy;
@@ -91,7 +100,8 @@ class Simulation {
     double dt_min_s, dt_max_s;
     std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
     std::int64_t sorts;
-    double memory_MB;  ///< of points and grid
+    std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
+    double memory_MB;                               ///< of points and grid
     int threads;
   };
   Counters counters() const;
@@ -101,6 +111,7 @@ class Simulation {
   void load(const std::filesystem::path& file);
 
  private:
+  friend class MidCollapse;  ///< bench/: starts from points that another resolution has moved
   class Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -5,7 +5,9 @@
 #include <tbb/task_arena.h>
 
 #include "mpm/grid.hpp"
+#include "mpm/implicit_viscosity.hpp"
 #include "mpm/ledger.hpp"
+#include "mpm/periodic.hpp"
 #include "mpm/simulation.hpp"
 #include "mpm/step_size.hpp"
 #include "mpm/transfer.hpp"
@@ -15,18 +17,19 @@ namespace repose::mpm {
 
 class Simulation::Impl {
  public:
-  Impl(const Scene& scene, int threads);
+  Impl(const Scene& scene, const Prescribed& prescribed, int threads);
 
   void step(double stop_at);
 
   // --- the algorithm box, one function per stage ---
   void sort_if_needed();
   double choose_step(double stop_at) const;
-  void points_to_grid();           ///< P2G: mass, momentum, internal force of every block's tile
-  void update_grid(double dt);     ///< sum tiles, accelerate nodes
-  void extend_velocity();          ///< XPIC, FMPM beyond first order (extended_pic.cpp)
-  void grid_to_points(double dt);  ///< G2P, move, update stress, P2G of the next step
-  void close_ledger();             ///< kinetic energies before and after; throws NumericalFailure
+  void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
+  void update_grid(double dt);      ///< sum tiles, accelerate nodes
+  void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
+  void extend_velocity();           ///< XPIC, FMPM beyond first order (extended_pic.cpp)
+  void grid_to_points(double dt);   ///< G2P, move, update stress, P2G of the next step
+  void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
 
   SeriesRow diagnostics();
   /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.
@@ -45,6 +48,9 @@ class Simulation::Impl {
   mutable tbb::task_arena arena;
   int threads;
 
+  Prescribed prescribed;
+  std::vector<double> start_x, start_y;  ///< by point id, if an acceleration is prescribed [m]
+
   double time = 0.0;
   std::int64_t steps = 0;
   std::int64_t point_steps = 0;
@@ -53,8 +59,10 @@ class Simulation::Impl {
   double drift = 0.0;  ///< bound on the way any point has gone since the last sort [m]
   bool must_sort = true;
   bool tiles_are_current = false;  ///< the tiles hold the points as they are
+  double tiles_time = 0.0;         ///< the moment whose forces they hold [s]
   std::int64_t sorts = 0;
   std::int64_t wall_corrections = 0;
+  std::int64_t newton_iterations = 0, cg_iterations = 0;  ///< of the implicit viscosity
   double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
   double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
   double first_dt = 0.0;
@@ -73,23 +81,17 @@ class Simulation::Impl {
     bool outflow = false;
     std::string failure;
   };
-  /// Calls f(kernel) with the scene's interpolation functions.
-  template <class F>
-  void with_kernel(F&& f) const {
-    const bool spline_gradient = scene.transfer == Transfer::tpic;
-    if (scene.kernel == mpm::Kernel::cubic)
-      spline_gradient ? f(SplineGradient<CubicKernel>{}) : f(CubicKernel{});
-    else
-      spline_gradient ? f(SplineGradient<QuadraticKernel>{}) : f(QuadraticKernel{});
-  }
-  template <class Kernel, bool affine>
+  template <class Kernel, bool affine, bool averages>
   void transfer_to_tile(std::size_t block);
-  template <class Kernel, Keeps keeps>
+  template <class Kernel>
+  void prescribed_force_to_tile(const PointSet& points, const Range& range,
+                                std::array<int, 2> origin, Tile& tile) const;
+  template <class Kernel, Keeps keeps, bool averages>
   void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
   void move(PointSet& points, const Range& range, const Motion& motion, double dt,
             BlockSums& sums) const;
   /// Brings a range's stress to the end of the step; `scratch` has room for scratch_arrays arrays.
-  static constexpr std::size_t scratch_arrays = 10;
+  static constexpr std::size_t scratch_arrays = 12;
   void strain(PointSet& points, std::size_t body, const Range& range, const Motion& motion,
               double dt, double* scratch, BlockSums& sums) const;
   /// Adds a range's energies, work, power and signals after its update.
@@ -97,25 +99,24 @@ class Simulation::Impl {
               BlockSums& sums) const;
   /// How far a point may be from the cell it was sorted into [m].
   double reach() const { return 0.98 * grid.h(); }
+  bool averages() const { return scene.pressure_averaging > 0.0; }
+  std::size_t channels() const { return averages() ? tile_channels : T_ELASTIC; }
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
   void remove_outflow();
   double initial_power() const;
-  /// −Vσ:L + mg·v of one point [W/m].
-  double power_of(const PointSet& points, std::size_t slot) const;
+  /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].
+  double power_of(const PointSet& points, std::size_t slot, double dt) const;
   std::string describe(const PointSet& points, std::size_t body, std::size_t slot) const;
 
   std::vector<BlockSums> block_sums_;
-  /// Kinetic energy of a block's nodes before and after forces, ΔtΣ(f + mg)·u.
-  struct NodeSums {
-    double before = 0.0, after = 0.0, impulse_work = 0.0;
-    double extension_work = 0.0;  ///< ½ΔtΣ(f + mg)·(v_k − v), see extended_pic.hpp
-  };
-  std::vector<NodeSums> node_sums_;
+  std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
   WallEffect wall_effect_;
   std::vector<MirroredTriple> mirrored_;  ///< what the walls did, for the extension
   /// Of the extension: its remainder r, A r, and what it has added up.
-  NodeField remainder_, through_points_, extension_;
+  NodeVector remainder_, through_points_, extension_;
+  ImplicitViscosity viscosity_;
+  ViscousEffect viscous_effect_;
 };
 
 }  // namespace repose::mpm

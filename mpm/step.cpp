@@ -2,12 +2,33 @@
 
 #include <fmt/format.h>
 
+#include "mpm/block_loops.hpp"
+#include "mpm/body_force.hpp"
+#include "mpm/pressure_averaging.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/tile_exchange.hpp"
 #include "mpm/transfer.hpp"
 
 namespace repose::mpm {
 namespace {
+
+/// Calls f with the interpolation functions of a scene, and with whether points hand on an affine
+/// velocity and whether pressures are averaged as constants, all chosen at run time.
+template <class F>
+void choose(const Scene& scene, bool affine, bool averages, F&& f) {
+  using Yes = std::true_type;
+  using No = std::false_type;
+  const auto with = [&](auto kernel, auto is_affine) {
+    averages ? f(kernel, is_affine, Yes{}) : f(kernel, is_affine, No{});
+  };
+  const auto with_either = [&](auto kernel) { affine ? with(kernel, Yes{}) : with(kernel, No{}); };
+  const bool cubic = scene.kernel == Kernel::cubic;
+  if (scene.transfer == Transfer::tpic)  // always affine
+    cubic ? with(SplineGradient<CubicKernel>{}, Yes{})
+          : with(SplineGradient<QuadraticKernel>{}, Yes{});
+  else
+    cubic ? with_either(CubicKernel{}) : with_either(QuadraticKernel{});
+}
 
 /// The larger of two; a NaN in `x` is kept, so that it cannot slip through a maximum.
 template <class T>
@@ -42,14 +63,17 @@ void Simulation::Impl::step(double stop_at) {
   const double dt = choose_step(stop_at);
   if (!tiles_are_current) points_to_grid();
   update_grid(dt);
+  if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
   const bool extends = retention(dt).extended;
   wall_effect_ = apply_walls(grid, walls, extends ? &mirrored_ : nullptr);
+  solve_viscosity(dt);
   if (extends) extend_velocity();
+  tiles_time = time + dt >= stop_at - 1e-9 * dt ? stop_at : time + dt;
   grid_to_points(dt);
   last_dt = dt;
   dt_min = std::min(dt_min, dt);
   dt_max = std::max(dt_max, dt);
-  time = time + dt >= stop_at - 1e-9 * dt ? stop_at : time + dt;
+  time = tiles_time;
   ++steps;
   close_ledger();
 }
@@ -57,6 +81,10 @@ void Simulation::Impl::step(double stop_at) {
 void Simulation::Impl::sort_if_needed() {
   // a tile covers one cell around its block
   if (!must_sort && drift < reach()) return;
+  if (walls.periodic()) {
+    const double width = grid.h() * grid.nx();
+    for (PointSet& points : bodies) ledger.outflow -= wrap_points(points, width, gravity[0]);
+  }
   remove_outflow();
   grid.sort(bodies);
   tiles_are_current = false;
@@ -96,20 +124,48 @@ Retention Simulation::Impl::retention(double dt) const {
   return {true, keep, keep};
 }
 
-template <class Kernel, bool affine>
+template <class Kernel, bool affine, bool averages>
 void Simulation::Impl::transfer_to_tile(std::size_t block) {
   const PointBlock& pb = grid.point_blocks[block];
   Tile& tile = grid.tiles[block];
-  for (auto& channel : tile) channel.fill(0.0);
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    points_to_tile<Kernel, affine>(bodies[b], pb.range[b], grid.h(), tile_origin(pb), tile);
+  for (std::size_t c = 0; c < channels(); ++c) tile[c].fill(0.0);
+  static thread_local AlignedVector<double> elastic;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Range& range = pb.range[b];
+    if constexpr (averages) {
+      elastic.resize(std::max(elastic.size(), padded(range.count)));
+      bodies[b].material->elastic_volume_strain(bodies[b].batch(range), elastic.data());
+    }
+    points_to_tile<Kernel, affine, averages>(bodies[b], range, grid.h(), tile_origin(pb),
+                                             elastic.data(), tile);
+    if (prescribed.acceleration)
+      prescribed_force_to_tile<Kernel>(bodies[b], range, tile_origin(pb), tile);
+  }
+}
+
+template <class Kernel>
+void Simulation::Impl::prescribed_force_to_tile(const PointSet& points, const Range& range,
+                                                std::array<int, 2> origin, Tile& tile) const {
+  if (range.count == 0) return;
+  const std::size_t n = range.count;
+  static thread_local std::vector<double> scratch;
+  scratch.assign(4 * n, 0.0);
+  const std::span<double> start[2] = {{scratch.data(), n}, {scratch.data() + n, n}};
+  const std::span<double> a[2] = {{scratch.data() + 2 * n, n}, {scratch.data() + 3 * n, n}};
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto name = static_cast<std::size_t>(points.id[range.begin + k]);
+    start[0][k] = start_x[name];
+    start[1][k] = start_y[name];
+  }
+  prescribed.acceleration(tiles_time, start[0], start[1], a[0], a[1]);
+  body_force_to_tile<Kernel>(points, range, a[0], a[1], grid.h(), origin, tile);
 }
 
 void Simulation::Impl::points_to_grid() {
+  tiles_time = time;
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    const bool affine = retention(0.0).affine;
-    with_kernel([&]<class Kernel>(Kernel) {
-      affine ? transfer_to_tile<Kernel, true>(k) : transfer_to_tile<Kernel, false>(k);
+    choose(scene, retention(0.0).affine, averages(), [&]<class K>(K, auto affine, auto averages) {
+      transfer_to_tile<K, affine.value, averages.value>(k);
     });
   });
 }
@@ -119,7 +175,8 @@ void Simulation::Impl::update_grid(double dt) {
   for_each_block(arena, grid.node_blocks.size(), [&](std::size_t k) {
     NodeBlock& nb = grid.node_blocks[k];
     alignas(64) NodeTotals<tile_channels> sum{};
-    add_tiles<tile_channels>(grid, nb, {T_MASS, T_PX, T_PY, T_FX, T_FY}, sum);
+    add_tiles<tile_channels>(grid, nb, {T_MASS, T_PX, T_PY, T_FX, T_FY, T_ELASTIC}, sum,
+                             channels());
     Pack before(0.0), after(0.0), impulse_work(0.0);
     const Pack zero(0.0), half(0.5), one(1.0), step(dt);
     for (std::size_t n = 0; n < block_nodes; n += Pack::size) {
@@ -142,6 +199,7 @@ void Simulation::Impl::update_grid(double dt) {
       uy.store_aligned(nb.uy.data() + n);
       wx.store_aligned(nb.vx.data() + n);
       wy.store_aligned(nb.vy.data() + n);
+      if (averages()) (at(T_ELASTIC) * inv_m).store_aligned(nb.elastic.data() + n);
       before = before + half * m * (ux * ux + uy * uy);
       after = after + half * m * (wx * wx + wy * wy);
       impulse_work = impulse_work + m * (kick_x * ux + kick_y * uy);
@@ -153,27 +211,31 @@ void Simulation::Impl::update_grid(double dt) {
 void Simulation::Impl::grid_to_points(double dt) {
   block_sums_.assign(grid.point_blocks.size(), BlockSums{});
   const Retention keep = retention(dt);
-  const auto advance = [&]<class Kernel>(Kernel, std::size_t k) {
-    if (keep.gradient > 0.0)
-      advance_block<Kernel, Keeps::velocity_and_gradient>(k, dt, keep, block_sums_[k]);
+  const auto advance = [&]<class Kernel>(Kernel, auto affine, auto averages, std::size_t k) {
+    BlockSums& sums = block_sums_[k];
+    if constexpr (Kernel::spline_gradient)  // of tpic, which keeps nothing
+      advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
+    else if (keep.gradient > 0.0)
+      advance_block<Kernel, Keeps::velocity_and_gradient, averages.value>(k, dt, keep, sums);
     else if (keep.velocity > 0.0)
-      advance_block<Kernel, Keeps::velocity>(k, dt, keep, block_sums_[k]);
+      advance_block<Kernel, Keeps::velocity, averages.value>(k, dt, keep, sums);
     else if (keep.extended && scene.transfer == Transfer::xpic)
-      advance_block<Kernel, Keeps::extension>(k, dt, keep, block_sums_[k]);
+      advance_block<Kernel, Keeps::extension, averages.value>(k, dt, keep, sums);
     else
-      advance_block<Kernel, Keeps::nothing>(k, dt, keep, block_sums_[k]);
+      advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
     // While the points of the block are in the cache: their way to the grid of the next step. If
     // any of them has left the tile, all blocks are sorted first (sort_if_needed), and this waits.
-    const BlockSums& sums = block_sums_[k];
     if (drift + sums.signals.speed * dt < reach() && sums.failure.empty())
-      keep.affine ? transfer_to_tile<Kernel, true>(k) : transfer_to_tile<Kernel, false>(k);
+      transfer_to_tile<Kernel, affine.value, averages.value>(k);
   };
-  for_each_block(arena, grid.point_blocks.size(),
-                 [&](std::size_t k) { with_kernel([&](auto kernel) { advance(kernel, k); }); });
+  for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
+    choose(scene, keep.affine, averages(),
+           [&](auto kernel, auto affine, auto averages) { advance(kernel, affine, averages, k); });
+  });
   tiles_are_current = true;  // unless points have left them, and then sort_if_needed() says so
 }
 
-template <class Kernel, Keeps keeps>
+template <class Kernel, Keeps keeps, bool averages>
 void Simulation::Impl::advance_block(std::size_t block, double dt, const Retention& keep,
                                      BlockSums& sums) {
   const PointBlock& pb = grid.point_blocks[block];
@@ -188,6 +250,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, const Retenti
     fill(&VelocityTile::ux, &NodeBlock::ux);
     fill(&VelocityTile::uy, &NodeBlock::uy);
   }
+  if constexpr (averages) fill(&VelocityTile::elastic, &NodeBlock::elastic);
 
   static thread_local AlignedVector<double> scratch;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -195,10 +258,11 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, const Retenti
     if (range.count == 0) continue;
     const std::size_t n = padded(range.count);
     if (scratch.size() < scratch_arrays * n) scratch.resize(scratch_arrays * n);
-    const Motion motion{scratch.data(), scratch.data() + n};
-    tile_to_points<Kernel, keeps>(tile, tile_origin(pb), grid.h(), range, keep, bodies[b], motion);
+    const Motion motion{scratch.data(), scratch.data() + n, scratch.data() + 2 * n};
+    tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, keep, bodies[b],
+                                            motion);
     move(bodies[b], range, motion, dt, sums);
-    strain(bodies[b], b, range, motion, dt, scratch.data() + 2 * n, sums);
+    strain(bodies[b], b, range, motion, dt, scratch.data() + 3 * n, sums);
   }
 }
 
@@ -210,6 +274,7 @@ void Simulation::Impl::move(PointSet& points, const Range& range, const Motion& 
   const double width = grid.h() * grid.nx();
   const double height = grid.h() * grid.ny();
   const auto keep = [&](double& x, double upper, const Wall& low, const Wall& high, bool counts) {
+    if (low.kind == Wall::Kind::periodic) return;  // wrapped when points are sorted
     if (x < hair) {
       if (low.kind == Wall::Kind::open) {
         sums.outflow = sums.outflow || x < 0.0;
@@ -247,22 +312,38 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   const std::size_t n = padded(range.count);
   double* const e_xx = scratch;
   double* const e_yy = e_xx + n;
-  double* const e_zz = e_yy + n;  // plane strain: stays 0
+  double* const e_zz = e_yy + n;  // plane strain: 0 but for shares of a volume strain
   double* const e_xy = e_zz + n;
   double* const spin = e_xy + n;
   double* const work = spin + n;
   double* const modulus = work + n;
   double* const viscosity = modulus + n;
-  const Pack step(dt), half_step(0.5 * dt);
+  // The step maps x to x + Δt v(x), whose gradient is I + A, A = Δt L: its logarithm is A − ½A², to
+  // third order in Δt. (A alone would make density and strain first order in Δt.) A viscous law
+  // takes only the volume from it, and the rest from D = sym L, which is what its stress follows.
+  const bool follows_rate = !points.material->law().has_stress_memory;
+  const Pack step(dt), half(0.5), third(1.0 / 3.0), zero(0.0);
   std::fill_n(scratch, 5 * n, 0.0);  // padding that no pack of points reaches is at rest
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
-    const auto at = [&](Field f) { return Pack::load_aligned(points[f] + range.begin + k); };
+    const auto at = [&](Field f) { return step * Pack::load_aligned(points[f] + range.begin + k); };
+    const Pack xx = at(LXX);
     const Pack xy = at(LXY);
     const Pack yx = at(LYX);
-    (step * at(LXX)).store_aligned(e_xx + k);
-    (step * at(LYY)).store_aligned(e_yy + k);
-    (half_step * (xy + yx)).store_aligned(e_xy + k);
-    (half_step * (yx - xy)).store_aligned(spin + k);
+    const Pack yy = at(LYY);
+    // −½A²: xx, yy, and what the off-diagonal terms are multiplied by
+    Pack c_xx = -half * (xx * xx + xy * yx);
+    Pack c_yy = -half * (yy * yy + xy * yx);
+    Pack c = -half * (xx + yy);
+    if (follows_rate) {  // its volume only, the same in all three directions
+      c_xx = c_yy = third * (c_xx + c_yy);
+      c = zero;
+      c_xx.store_aligned(e_zz + k);
+    }
+    (xx + c_xx).store_aligned(e_xx + k);
+    (yy + c_yy).store_aligned(e_yy + k);
+    const Pack share = half * (Pack(1.0) + c);
+    (share * (xy + yx)).store_aligned(e_xy + k);
+    (share * (yx - xy)).store_aligned(spin + k);
   }
   Batch batch = points.batch(range);
   batch.dt = dt;
@@ -270,8 +351,14 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
   batch.spin = spin;
   batch.work = work;
   batch.modulus = modulus;
-  batch.viscosity = points.material->law().has_stress_memory ? nullptr : viscosity;
+  const bool viscous = !points.material->law().has_stress_memory && !points.splits_stress();
+  batch.viscosity = viscous ? viscosity : nullptr;
+  double* const pressure_before = viscosity + n;
+  if (averages())
+    add_averaging_strain(*points.material, batch, scene.pressure_averaging, motion.elastic,
+                         pressure_before, {e_xx, e_yy, e_zz, e_xy});
   const UpdateReport report = points.material->update(batch);
+  if (averages()) take_back_averaging_work(batch, motion.elastic, pressure_before);
   if (!report.ok() && sums.failure.empty()) {
     const std::size_t k = report.failed;
     sums.failure = fmt::format(
@@ -279,6 +366,7 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
         "{:.6g} in {:.3g} s",
         describe(points, body, range.begin + k), e_xx[k], e_yy[k], e_xy[k], dt);
   }
+  if (points.splits_stress()) split_stress(points, range, batch);
   // A point alone in its stencil has the density m Σw²/h² (Σw² = 0.21 to 0.25, cubic; more,
   // quadratic); looser than that the grid cannot tell, and spray would dilate without end.
   const Pack per_cell(0.2 / (grid.h() * grid.h()));
@@ -292,7 +380,8 @@ void Simulation::Impl::strain(PointSet& points, std::size_t body, const Range& r
 
 void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const Batch& batch,
                               const Motion& motion, BlockSums& sums) const {
-  const Pack half(0.5), one(1.0), gx(gravity[0]), gy(gravity[1]);
+  const bool follows_rate = !points.material->law().has_stress_memory;
+  const Pack half(0.5), one(1.0), zero(0.0), step(batch.dt), gx(gravity[0]), gy(gravity[1]);
   const Pack viscous_factor(4.0 / (grid.h() * grid.h()));
   Pack kinetic(0.0), work(0.0), power(0.0);
   Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
@@ -304,12 +393,29 @@ void Simulation::Impl::sum_up(const PointSet& points, const Range& range, const 
     const Pack vy = at(VY);
     const Pack moving_x = Pack::load_aligned(motion.vx + k);
     const Pack moving_y = Pack::load_aligned(motion.vy + k);
-    const Pack strain_v =
-        Pack::load_aligned(batch.strain[0] + k) + Pack::load_aligned(batch.strain[1] + k);
+    const auto strain_of = [&](std::size_t i) { return Pack::load_aligned(batch.strain[i] + k); };
+    const Pack strain_v = strain_of(0) + strain_of(1) + strain_of(2);
     kinetic = kinetic + half * m * (vx * vx + vy * vy);
     // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
     work = work + m * inv_rho * (one - half * strain_v) * Pack::load_aligned(batch.work + k);
-    const Pack stress_power = at(SXX) * at(LXX) + at(SYY) * at(LYY) + at(SXY) * (at(LXY) + at(LYX));
+    const auto force_stress = [&](std::size_t c) {
+      return Pack::load_aligned(points[points.force_stress[c]] + range.begin + k);
+    };
+    // Seen from where the step ends, the velocity that it moved with has the gradient L(I + ΔtL)⁻¹
+    // ≈ L − ΔtL²; strain() takes its volume alone for a law that follows the rate.
+    const Pack xx = at(LXX);
+    const Pack xy = at(LXY);
+    const Pack yx = at(LYX);
+    const Pack yy = at(LYY);
+    Pack c_xx = step * (xx * xx + xy * yx);
+    Pack c_yy = step * (yy * yy + xy * yx);
+    Pack c = step * (xx + yy);
+    if (follows_rate) {
+      c_xx = c_yy = half * (c_xx + c_yy);
+      c = zero;
+    }
+    const Pack stress_power = force_stress(0) * (xx - c_xx) + force_stress(1) * (yy - c_yy) +
+                              force_stress(2) * (one - c) * (xy + yx);
     power = power + m * (gx * moving_x + gy * moving_y - stress_power * inv_rho);
     const Pack v2 = moving_x * moving_x + moving_y * moving_y;
     speed2 = max_of(speed2, v2);
@@ -350,7 +456,8 @@ void Simulation::Impl::close_ledger() {
   // at the whole step, with half a kick on both sides (ledger.hpp)
   const double points_to_nodes =
       (ledger.kinetic + 0.5 * last_dt * ledger.power) - (nodes.before + 0.5 * nodes.impulse_work);
-  const double nodes_to_points = nodes.after + wall_effect_.kinetic_after - kinetic;
+  const double nodes_to_points =
+      nodes.after + wall_effect_.kinetic_after + viscous_effect_.kinetic - kinetic;
   const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
   const Retention keep = retention(last_dt);
   // what points keep, no mirror takes; nor, beyond first order, what an extension gives back
@@ -358,9 +465,10 @@ void Simulation::Impl::close_ledger() {
   ledger.transfer_loss +=
       points_to_nodes + nodes_to_points + nodes.extension_work - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
+  ledger.wall_loss -= wall_effect_.drag_after - kept * wall_effect_.drag_before;
   ledger.kinetic = kinetic;
   ledger.power = power;
-  ledger.stress_work += work;
+  ledger.stress_work += work + viscous_effect_.half_jump_work;
   drift += now.speed * last_dt;
   if (scene.dt) {
     fixed_step_excess = std::max(fixed_step_excess, last_dt * now.signal / grid.h());

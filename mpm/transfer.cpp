@@ -27,6 +27,7 @@ REPOSE_INLINE inline void unrolled(F&& f) {
 /// The coefficients of a pack of points.
 enum Coefficient : std::size_t {
   C_M,
+  C_E,
   C_PX,
   C_PY,
   C_XX,
@@ -41,12 +42,12 @@ enum Coefficient : std::size_t {
 
 /// Sums of a stencil kept in registers while consecutive points share the same stencil: all of its
 /// rows, side by side. (Every index is known to the compiler, or they would live in memory.)
-template <class Kernel>
+template <class Kernel, bool averages>
 class Accumulator {
  public:
   Accumulator() { clear(); }
   REPOSE_INLINE void clear() {
-    unrolled<tile_channels * packs_per_stencil>([&](auto k) REPOSE_INLINE { sum_[k] = Pack(0.0); });
+    unrolled<channels * packs_per_stencil>([&](auto k) REPOSE_INLINE { sum_[k] = Pack(0.0); });
   }
 
   template <bool affine>
@@ -57,40 +58,31 @@ class Accumulator {
     const auto of = [&](std::size_t k) { return Pack(c[k][lane]); };
     const Pack px = affine ? xsimd::fma(of(C_XX), dx, of(C_PX)) : of(C_PX);
     const Pack py = affine ? xsimd::fma(of(C_YX), dx, of(C_PY)) : of(C_PY);
-    // times the weight or slope along y, in which the rows differ
-    const RowPair slope = Kernel::spline_gradient ? Kernel::slopes_of_point(t_x, t_y) : at.d;
-    const Pack along_x = Kernel::spline_gradient ? slope.x_repeated() : dx;
-    const Pack fx = of(C_FXX) * along_x;
-    const Pack fy = of(C_FXY) * along_x;
-    const Pack fx_y = of(C_FXY) * w_row;
-    const Pack fy_y = of(C_FYY) * w_row;
+    const Pack fx = of(C_FXX) * dx;
+    const Pack fy = of(C_FXY) * dx;
     unrolled<packs_per_stencil>([&](auto k) REPOSE_INLINE {
       constexpr int row = static_cast<int>(k * rows_per_pack);
-      const Pack w_y = at.w.template y_spread<row>();
-      const Pack w = w_row * w_y;
+      const Pack w = w_row * at.w.template y_spread<row>();
       const Pack dy = at.d.template y_spread<row>();
-      const auto sum = [&](auto channel)
-                           REPOSE_INLINE -> Pack& { return sum_[channel * packs_per_stencil + k]; };
-      const auto add = [&](auto channel, const Pack& value)
-                           REPOSE_INLINE { sum(channel) = xsimd::fma(w, value, sum(channel)); };
-      using Fx = std::integral_constant<std::size_t, T_FX>;
-      using Fy = std::integral_constant<std::size_t, T_FY>;
+      const auto add = [&](auto channel, const Pack& value) REPOSE_INLINE {
+        Pack& sum = sum_[channel * packs_per_stencil + k];
+        sum = xsimd::fma(w, value, sum);
+      };
       add(std::integral_constant<std::size_t, T_MASS>{}, of(C_M));
       add(std::integral_constant<std::size_t, T_PX>{}, affine ? xsimd::fma(of(C_XY), dy, px) : px);
       add(std::integral_constant<std::size_t, T_PY>{}, affine ? xsimd::fma(of(C_YY), dy, py) : py);
-      if constexpr (Kernel::spline_gradient) {
-        const Pack slope_y = slope.template y_spread<row>();
-        sum(Fx{}) = xsimd::fma(w_y, fx, xsimd::fma(slope_y, fx_y, sum(Fx{})));
-        sum(Fy{}) = xsimd::fma(w_y, fy, xsimd::fma(slope_y, fy_y, sum(Fy{})));
-      } else {
-        add(Fx{}, xsimd::fma(of(C_FXY), dy, fx));
-        add(Fy{}, xsimd::fma(of(C_FYY), dy, fy));
+      if constexpr (!Kernel::spline_gradient) {
+        add(std::integral_constant<std::size_t, T_FX>{}, xsimd::fma(of(C_FXY), dy, fx));
+        add(std::integral_constant<std::size_t, T_FY>{}, xsimd::fma(of(C_FYY), dy, fy));
       }
+      if constexpr (averages) add(std::integral_constant<std::size_t, T_ELASTIC>{}, of(C_E));
     });
+    if constexpr (Kernel::spline_gradient)
+      add_force_by_slopes(at.w, Kernel::slopes_of_point(t_x, t_y), c, lane);
   }
 
   REPOSE_INLINE void add_to(Tile& tile, std::size_t node) const {
-    unrolled<tile_channels>([&](auto c) REPOSE_INLINE {
+    unrolled<channels>([&](auto c) REPOSE_INLINE {
       unrolled<Kernel::rows>([&](auto row) REPOSE_INLINE {
         double* at = tile[c].data() + node + row * tile_stride;
         const Row sum =
@@ -101,14 +93,36 @@ class Accumulator {
   }
 
  private:
-  Pack sum_[tile_channels * packs_per_stencil];
+  /// c_fx w′(ξ) w(η) + c_fy w(ξ) w′(η).
+  REPOSE_INLINE void add_force_by_slopes(const RowPair& w, const RowPair& slope,
+                                         const double (*c)[Pack::size], std::size_t lane) {
+    const auto of = [&](std::size_t k) { return Pack(c[k][lane]); };
+    const Pack w_x = w.x_repeated();
+    const Pack slope_x = slope.x_repeated();
+    const Pack fx_x = of(C_FXX) * slope_x;
+    const Pack fx_y = of(C_FXY) * w_x;
+    const Pack fy_x = of(C_FXY) * slope_x;
+    const Pack fy_y = of(C_FYY) * w_x;
+    unrolled<packs_per_stencil>([&](auto k) REPOSE_INLINE {
+      constexpr int row = static_cast<int>(k * rows_per_pack);
+      const Pack w_y = w.template y_spread<row>();
+      const Pack slope_y = slope.template y_spread<row>();
+      Pack& fx = sum_[T_FX * packs_per_stencil + k];
+      Pack& fy = sum_[T_FY * packs_per_stencil + k];
+      fx = xsimd::fma(w_y, fx_x, xsimd::fma(slope_y, fx_y, fx));
+      fy = xsimd::fma(w_y, fy_x, xsimd::fma(slope_y, fy_y, fy));
+    });
+  }
+
+  static constexpr std::size_t channels = averages ? tile_channels : T_ELASTIC;
+  Pack sum_[channels * packs_per_stencil];
 };
 
 }  // namespace
 
-template <class Kernel, bool affine>
+template <class Kernel, bool affine, bool averages>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    Tile& tile) {
+                    const double* elastic, Tile& tile) {
   const double inv_h = 1.0 / h;
   // −V D⁻¹ h and the affine velocity times h: distances are in units of h
   const Pack minus_D_h(-Kernel::gradient_scale * inv_h);
@@ -118,7 +132,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
   const Pack y_1(origin[1] + 1.0);
   const std::size_t a = points.affine;
 
-  Accumulator<Kernel> stencil;
+  Accumulator<Kernel, averages> stencil;
   constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
   std::size_t current = nowhere;
   for (std::size_t first = 0; first < range.count; first += Pack::size) {
@@ -130,6 +144,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
     const Pack m = at(MASS);
     const Pack V = m / at(RHO) * minus_D_h;
     m.store_aligned(c[C_M]);
+    if constexpr (averages) (m * Pack::load_aligned(elastic + first)).store_aligned(c[C_E]);
     (m * at(VX)).store_aligned(c[C_PX]);
     (m * at(VY)).store_aligned(c[C_PY]);
     if constexpr (affine) {
@@ -139,9 +154,9 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
       (mh * at(a + 2)).store_aligned(c[C_YX]);
       (mh * at(a + 3)).store_aligned(c[C_YY]);
     }
-    (V * at(SXX)).store_aligned(c[C_FXX]);
-    (V * at(SXY)).store_aligned(c[C_FXY]);
-    (V * at(SYY)).store_aligned(c[C_FYY]);
+    (V * at(points.force_stress[0])).store_aligned(c[C_FXX]);
+    (V * at(points.force_stress[1])).store_aligned(c[C_FYY]);
+    (V * at(points.force_stress[2])).store_aligned(c[C_FXY]);
     const Pack x = at(X) * Pack(inv_h);
     const Pack y = at(Y) * Pack(inv_h);
     const Pack anchor_x = Kernel::anchor(x);
@@ -164,7 +179,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
   if (current != nowhere) stencil.add_to(tile, current);
 }
 
-template <class Kernel, Keeps keeps>
+template <class Kernel, Keeps keeps, bool averages>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
                     const Range& range, const Retention& keep, PointSet& points, Motion motion) {
   const Pack inv_h(1.0 / h);
@@ -180,10 +195,12 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     const auto put = [&](std::size_t f, const Pack& x) { x.store_aligned(points[f] + s); };
     const PackStencil<Kernel> stencil(at(X) * inv_h - x_0, at(Y) * inv_h - y_0);
     Moments vx, vy, ux, uy;
+    Pack elastic(0.0);
     stencil.for_each_row([&](std::size_t row, const Pack& w, const Pack& w_d) {
       const std::size_t n = row * tile_stride;
       stencil.add(tile.vx.data() + n, w, w_d, vx);
       stencil.add(tile.vy.data() + n, w, w_d, vy);
+      if constexpr (averages) stencil.add(tile.elastic.data() + n, w, elastic);
       if constexpr (keeps == Keeps::velocity || keeps == Keeps::extension) {
         stencil.add(tile.ux.data() + n, w, ux.value);
         stencil.add(tile.uy.data() + n, w, uy.value);
@@ -194,6 +211,7 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     });
     vx.value.store_aligned(motion.vx + k);
     vy.value.store_aligned(motion.vy + k);
+    if constexpr (averages) elastic.store_aligned(motion.elastic + k);
     const Pack L[4] = {vx.dx * inv_D_h, vx.dy * inv_D_h, vy.dx * inv_D_h, vy.dy * inv_D_h};
     if constexpr (keeps == Keeps::nothing) {
       put(VX, vx.value);
@@ -213,27 +231,28 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
   }
 }
 
-#define REPOSE_TRANSFERS(KERNEL)                                                                  \
-  template void points_to_tile<KERNEL, true>(const PointSet&, const Range&, double,               \
-                                             std::array<int, 2>, Tile&);                          \
-  template void points_to_tile<KERNEL, false>(const PointSet&, const Range&, double,              \
-                                              std::array<int, 2>, Tile&);                         \
-  template void tile_to_points<KERNEL, Keeps::nothing>(const VelocityTile&, std::array<int, 2>,   \
-                                                       double, const Range&, const Retention&,    \
-                                                       PointSet&, Motion);                        \
-  template void tile_to_points<KERNEL, Keeps::velocity>(const VelocityTile&, std::array<int, 2>,  \
-                                                        double, const Range&, const Retention&,   \
-                                                        PointSet&, Motion);                       \
-  template void tile_to_points<KERNEL, Keeps::velocity_and_gradient>(                             \
+#define REPOSE_FROM_TILE(KERNEL, KEEPS, AVERAGES)                                                 \
+  template void tile_to_points<KERNEL, Keeps::KEEPS, AVERAGES>(                                   \
       const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&, \
-      Motion);                                                                                    \
-  template void tile_to_points<KERNEL, Keeps::extension>(const VelocityTile&, std::array<int, 2>, \
-                                                         double, const Range&, const Retention&,  \
-                                                         PointSet&, Motion);
-REPOSE_TRANSFERS(CubicKernel)
-REPOSE_TRANSFERS(QuadraticKernel)
-REPOSE_TRANSFERS(SplineGradient<CubicKernel>)
-REPOSE_TRANSFERS(SplineGradient<QuadraticKernel>)
+      Motion);
+#define REPOSE_TO_TILE(KERNEL, AFFINE, AVERAGES)          \
+  template void points_to_tile<KERNEL, AFFINE, AVERAGES>( \
+      const PointSet&, const Range&, double, std::array<int, 2>, const double*, Tile&);
+#define REPOSE_TRANSFERS(KERNEL, AVERAGES)                  \
+  REPOSE_TO_TILE(KERNEL, true, AVERAGES)                    \
+  REPOSE_TO_TILE(KERNEL, false, AVERAGES)                   \
+  REPOSE_FROM_TILE(KERNEL, nothing, AVERAGES)               \
+  REPOSE_FROM_TILE(KERNEL, velocity, AVERAGES)              \
+  REPOSE_FROM_TILE(KERNEL, velocity_and_gradient, AVERAGES) \
+  REPOSE_FROM_TILE(KERNEL, extension, AVERAGES)             \
+  REPOSE_TO_TILE(SplineGradient<KERNEL>, true, AVERAGES)    \
+  REPOSE_FROM_TILE(SplineGradient<KERNEL>, nothing, AVERAGES)
+REPOSE_TRANSFERS(CubicKernel, true)
+REPOSE_TRANSFERS(CubicKernel, false)
+REPOSE_TRANSFERS(QuadraticKernel, true)
+REPOSE_TRANSFERS(QuadraticKernel, false)
 #undef REPOSE_TRANSFERS
+#undef REPOSE_TO_TILE
+#undef REPOSE_FROM_TILE
 
 }  // namespace repose::mpm

@@ -8,6 +8,8 @@
 ///   v_p = Σ w v_i,   L_p = Σ w v_i (x_i − x_p)ᵀ D⁻¹;
 /// with a kernel that is a SplineGradient, f_i = −Σ V_p σ_p ∇w and L_p = Σ v_i (∇w)ᵀ instead (TPIC,
 /// Nakamura, Matsumura & Mizutani 2023).
+/// Where pressures are averaged (pressure_averaging.hpp), also
+///   e_i = Σ w m_p e_p/m_i,   ē_p = Σ w e_i.
 ///
 /// To the grid, the lanes of a register are the nodes of a stencil and a point's contributions stay
 /// in registers as long as the next point has the same stencil. From the grid, the lanes are
@@ -34,24 +36,28 @@ enum class Keeps : std::uint8_t { nothing, velocity, velocity_and_gradient, exte
 
 /// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.
-template <class Kernel, bool affine>
+/// `averages`: `elastic`, the range's elastic volume strains, go along; else it is not read.
+template <class Kernel, bool affine, bool averages>
 void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    Tile& tile);
+                    const double* elastic, Tile& tile);
 
 /// Velocity at the nodes of a tile, before (u) and after (v) forces.
 struct VelocityTile {
   alignas(64) std::array<double, tile_nodes> vx, vy, ux, uy;
+  std::array<double, tile_nodes> elastic;  ///< only where pressures are averaged
 };
 
-/// The velocity Σ w v_i that moves a range's points, from its first one on.
+/// The velocity Σ w v_i that moves a range's points, from its first one on, and the mean elastic
+/// volume strain around them.
 struct Motion {
   double *vx, *vy;
+  double* elastic = nullptr;  ///< ē; only where pressures are averaged
 };
 
 /// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY, the
 /// affine velocity) and gives the velocity that moves them, with the padding of the range treated
 /// like points. Where nothing is kept, ux and uy are not read.
-template <class Kernel, Keeps keeps>
+template <class Kernel, Keeps keeps, bool averages>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
                     const Range& range, const Retention& keep, PointSet& points, Motion motion);
 

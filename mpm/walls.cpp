@@ -26,6 +26,14 @@ struct WallNode {
   Pair after_forces() const {
     return read(block ? &block->vx : nullptr, block ? &block->vy : nullptr);
   }
+  /// A scalar that points average is even in every wall.
+  static void mirror_elastic(const WallNode& a, const WallNode& c) {
+    const double m = a.m() + c.m();
+    if (m == 0.0) return;
+    const double even = (a.m() * a.elastic() + c.m() * c.elastic()) / m;
+    if (a.block) a.block->elastic[a.place] = even;
+    if (c.block) c.block->elastic[c.place] = even;
+  }
   double real_mass() const { return block ? block->mass[place] : 0.0; }
   void set(double mirrored, const Pair& u, const Pair& v) const {
     if (!block) return;
@@ -37,6 +45,7 @@ struct WallNode {
   }
 
  private:
+  double elastic() const { return block ? block->elastic[place] : 0.0; }
   using Nodes = std::array<double, block_nodes>;
   Pair read(const Nodes* x, const Nodes* y) const {
     if (!block) return {};
@@ -56,6 +65,9 @@ struct Triple {
   friend Triple operator-(const Triple& x, const Triple& y) {
     return {x.a - y.a, x.b - y.b, x.c - y.c};
   }
+
+  /// Seen from a wall that slides along itself.
+  Triple moved(double by) const { return {{a.n, a.t + by}, {b.n, b.t + by}, {c.n, c.t + by}}; }
 
   /// Normal odd; tangential a mixture of even (stick = 0) and odd (stick = 1).
   Triple mirrored(double m_a, double m_c, double stick) const {
@@ -87,6 +99,7 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
   const double m_b = b.m();
   const double m_c = c.m();
   if (m_a + m_b + m_c == 0.0) return {};
+  WallNode::mirror_elastic(a, c);
   const Triple u{a.before_forces(), b.before_forces(), c.before_forces()};
   const Triple v{a.after_forces(), b.after_forces(), c.after_forces()};
   double stick = wall.kind == Wall::Kind::no_slip ? 1.0 : 0.0;
@@ -100,8 +113,8 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
     };
     record->push_back({{place(a), place(b), place(c)}, a.normal_is_x, m_a, m_c, stick});
   }
-  const Triple u_new = u.mirrored(m_a, m_c, stick);
-  const Triple v_new = v.mirrored(m_a, m_c, stick);
+  const Triple u_new = u.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
+  const Triple v_new = v.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
   a.set(m_a + m_c, u_new.a, v_new.a);
   b.set(2.0 * m_b, u_new.b, v_new.b);
   c.set(m_a + m_c, u_new.c, v_new.c);
@@ -111,15 +124,16 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
            m[2] * (x.c.n * y.c.n + x.c.t * y.c.t);
   };
   const Triple kick = v - u;  // Δt(f + mg)/m
+  const auto along = [&](const Triple& x) { return m[0] * x.a.t + m[1] * x.b.t + m[2] * x.c.t; };
   return {0.5 * (dot(u_new, u_new) - dot(u, u)), 0.5 * (dot(v_new, v_new) - dot(v, v)),
-          dot(kick, u_new - u)};
+          dot(kick, u_new - u), wall.speed * along(u_new - u), wall.speed * along(v_new - v)};
 }
 
 /// A wall along a line of nodes: x = const (normal_is_x) or y = const at node index `line`.
 WallEffect apply_wall(Grid& grid, const Wall& wall, bool normal_is_x, int line, int inward,
                       std::vector<MirroredTriple>* record) {
   WallEffect total;
-  if (wall.kind == Wall::Kind::open) return total;
+  if (wall.kind == Wall::Kind::open || wall.kind == Wall::Kind::periodic) return total;
   const int block = normal_is_x ? grid.block_of_cell_x(line) : grid.block_of_cell_y(line);
   for (const NodeBlock& nb : grid.node_blocks) {
     if ((normal_is_x ? nb.bx : nb.by) != block) continue;
@@ -151,11 +165,11 @@ WallEffect apply_walls(Grid& grid, const Walls& walls, std::vector<MirroredTripl
   return total;
 }
 
-void mirror(const std::vector<MirroredTriple>& record, NodeField& velocity) {
+void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity) {
   for (const MirroredTriple& at : record) {
     const auto component = [&](std::size_t k, bool x) -> double* {
       if (at.node[k].block < 0) return nullptr;
-      NodeVelocity& nodes = velocity[static_cast<std::size_t>(at.node[k].block)];
+      NodeField& nodes = velocity[static_cast<std::size_t>(at.node[k].block)];
       return &(x ? nodes.x : nodes.y)[static_cast<std::size_t>(at.node[k].place)];
     };
     const auto read = [&](std::size_t k) {

@@ -8,7 +8,7 @@
 /// their mirror image on c: m = m_c + m_a, m v_c = m_c v_c ± m_a v_a. The functions stay a
 /// partition of unity to the wall and lose no mass.
 ///   slip:     normal odd, tangential even
-///   no slip:  both odd
+///   no slip:  both odd, the tangential one about the wall's own speed
 ///   friction: free if nothing presses on the wall; else normal odd, tangential a mixture of even
 ///   and
 ///             odd with the share φ = min(1, friction J_n/J_t) of the impulse J_t that would stop
@@ -21,6 +21,7 @@ namespace repose::mpm {
 
 struct Walls {
   Wall left, right, floor, top;
+  bool periodic() const { return left.kind == Wall::Kind::periodic; }
 };
 
 /// What the walls do to the motion of the nodes, per metre of depth.
@@ -28,11 +29,15 @@ struct WallEffect {
   double kinetic_before = 0.0;  ///< change of ½Σmu², velocities before forces [J]
   double kinetic_after = 0.0;   ///< change of ½Σmv², velocities after forces [J]
   double impulse_work = 0.0;  ///< change of ΔtΣ(f + mg)·u: what the forces do on u in one step [J]
+  /// Change of Σmu and Σmv along a wall that moves, times its speed: the work of dragging [J].
+  double drag_before = 0.0, drag_after = 0.0;
 
   WallEffect& operator+=(const WallEffect& other) {
     kinetic_before += other.kinetic_before;
     kinetic_after += other.kinetic_after;
     impulse_work += other.impulse_work;
+    drag_before += other.drag_before;
+    drag_after += other.drag_after;
     return *this;
   }
 };
@@ -56,6 +61,6 @@ WallEffect apply_walls(Grid& grid, const Walls& walls,
 
 /// Does to another velocity, momentum of the points over mass of the nodes, what the walls did to
 /// those of the grid: the images behind the walls take part in it, with the same share of sticking.
-void mirror(const std::vector<MirroredTriple>& record, NodeField& velocity);
+void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity);
 
 }  // namespace repose::mpm

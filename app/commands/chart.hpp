@@ -13,4 +13,10 @@ ExitCode chart_point(const CommonOptions& options);
 /// and time. `file` is a fit file; empty: a twin experiment.
 ExitCode chart_fit(const CommonOptions& options, const std::string& file, long evaluations);
 
+/// A scene with every transfer, kernel, cell size and step that is asked for: run-out, energies and
+/// cost against the step. `file` is a scene; empty: the flat column of data/scenes/flat_mu_i.toml.
+/// What is varied comes as overrides of [chart] (read_chart.hpp) in options.sets; quick: in
+/// seconds.
+ExitCode chart_mpm(const CommonOptions& options, const std::string& file, bool quick);
+
 }  // namespace repose::app

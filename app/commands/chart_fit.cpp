@@ -9,6 +9,7 @@
 #include "app/interrupt.hpp"
 #include "app/plot/figure.hpp"
 #include "app/plot/gnuplot.hpp"
+#include "app/read_chart.hpp"
 #include "app/read_fit.hpp"
 #include "app/result_folder.hpp"
 #include "calibration/twin.hpp"
@@ -37,6 +38,7 @@ struct Task {
   std::string name;
   Problem problem;
   Eigen::VectorXd start;
+  std::string input;  ///< the fit as TOML; empty: the twin
 };
 
 /// Five parameters of London clay from three tests without noise: the least objective is 0. The
@@ -46,13 +48,13 @@ Task twin_task() {
   Problem problem = calibration::twin_problem(twin, calibration::cam_clay_tests());
   const auto n = problem.parameters();
   return {"five parameters of Cam-Clay, three tests, no noise", problem,
-          Eigen::VectorXd::LinSpaced(n, 0.3, 0.7)};
+          Eigen::VectorXd::LinSpaced(n, 0.3, 0.7), ""};
 }
 
 Task task_of(const FitFile& file) {
   Problem problem(calibration::ParameterSpace(file.free), file.targets, file.balance);
   const Eigen::VectorXd start = problem.space().start();
-  return {file.name, std::move(problem), start};
+  return {file.name, std::move(problem), start, file.resolved};
 }
 
 double first_objective(const Task& task) {
@@ -167,13 +169,16 @@ ExitCode chart_fit(const CommonOptions& options, const std::string& file, long e
                   ? twin_task()
                   : task_of(read_fit(file, options.sets, options.seed, folder.path() / "runs"));
   folder.remove_old_outputs();
-  const InterruptGuard interrupt;
-  task.problem.interrupt_by([&] { return interrupt.requested(); });
-  const double first = first_objective(task);
   calibration::OptimiseOptions settings;
   settings.max_evaluations = evaluations;
   settings.x_tolerance = 1e-12;
   if (options.seed != 0) settings.seed = options.seed;
+  folder.write_file("input.toml",
+                    fmt::format("# The input of this result, by repose {}.\n{}{}", version_string,
+                                task.input, chart_text(evaluations, settings.seed)));
+  const InterruptGuard interrupt;
+  task.problem.interrupt_by([&] { return interrupt.requested(); });
+  const double first = first_objective(task);
 
   std::vector<Run> runs;
   for (const Algorithm& algorithm : calibration::algorithms()) {

@@ -7,6 +7,7 @@
 #include "app/commands/chart.hpp"
 #include "app/plot/figure.hpp"
 #include "app/plot/gnuplot.hpp"
+#include "app/read_chart.hpp"
 #include "app/result_folder.hpp"
 #include "pointdriver/work_precision.hpp"
 #include "repose_version.hpp"
@@ -131,6 +132,8 @@ ExitCode chart_point(const CommonOptions& options) {
   const ResultFolder folder(options.output.empty() ? ResultFolder::default_path("chart_point")
                                                    : std::filesystem::path(options.output));
   folder.remove_old_outputs();
+  folder.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n{}",
+                                              version_string, chart_text(ChartKind::point)));
   std::vector<WorkPoint> points;
   for (const point::WorkPath& path : point::work_paths()) {
     const std::vector<WorkPoint> more = point::work_precision(path, seconds_each);

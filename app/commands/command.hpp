@@ -31,6 +31,9 @@ void add_quiet(CLI::App& verb, CommonOptions& options);
 /// -o, --seed, --resume, --json and the three above.
 void add_run_options(CLI::App& verb, CommonOptions& options);
 
+/// "From data/scenes/flat_mu_i.toml with --set grid.h=0.0125": where a resolved input comes from.
+std::string origin_line(const std::string& path, const CommonOptions& options);
+
 struct Command {
   CLI::App* verb;
   std::shared_ptr<const CommonOptions> options;

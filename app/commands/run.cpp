@@ -11,16 +11,6 @@
 namespace repose::app {
 namespace {
 
-/// "From data/scenes/flat_mu_i.toml with --set grid.h=0.0125"
-std::string origin_line(const std::string& path, const CommonOptions& options) {
-  std::string text = "From " + path;
-  for (std::size_t i = 0; i < options.sets.size(); ++i)
-    text += fmt::format("{} --set {}", i == 0 ? " with" : "", options.sets[i]);
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  return text;
-}
-
 ExitCode run_file(const std::string& path, const CommonOptions& options) {
   InputFile input = InputFile::read(path, options.sets);
   require_kind(input, FileKind::scene, "run");

@@ -135,7 +135,7 @@ TEST_F(CommandTest, MisuseIsBadInput) {
 TEST_F(CommandTest, Models) {
   const Outcome list = run({"models"});
   EXPECT_EQ(list.exit, 0);
-  for (const char* const name : {"modified_cam_clay", "mu_i", "newtonian"})
+  for (const char* const name : {"modified_cam_clay", "mu_i", "newtonian", "neo_hookean"})
     EXPECT_NE(list.out.find(name), std::string::npos);
   const Outcome law = run({"models", "mu_i"});
   EXPECT_EQ(law.exit, 0);
@@ -146,7 +146,7 @@ TEST_F(CommandTest, Models) {
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_EQ(unknown.err,
             "repose models: unknown law \"mu_j\"; did you mean \"mu_i\"? (known: "
-            "\"modified_cam_clay\", \"mu_i\", \"newtonian\")\n");
+            "\"modified_cam_clay\", \"mu_i\", \"newtonian\", \"neo_hookean\")\n");
   EXPECT_TRUE(Json::parse(run({"models", "mu_i", "--json"}).out).is_array());
 }
 
@@ -207,7 +207,7 @@ TEST_F(CommandTest, ARunLeavesACompleteResult) {
             "time_s,step,dt_s,front_m,front_max_m,height_m,kinetic_J_per_m,potential_J_per_m,"
             "elastic_J_per_m,dissipated_J_per_m,mass_kg_per_m,momentum_x,momentum_y,density_min,"
             "density_max,points_separated,transfer_loss_J_per_m,wall_loss_J_per_m,"
-            "energy_residual_J_per_m,outflow_kg_per_m");
+            "energy_residual_J_per_m,outflow_kg_per_m,angular_momentum");
   EXPECT_EQ(series[1].substr(0, 4), "0,0,");
   EXPECT_EQ(series[101].substr(0, 9), "0.1,5000,");
   EXPECT_EQ(lines_of(content_of(folder / "profile.csv")).at(0), "x_m,depth_m");
@@ -285,6 +285,29 @@ TEST_F(CommandTest, InterruptedAndResumedGivesTheSameBits) {
   }
 }
 
+// The run under way goes on from its checkpoint, those before it are not repeated.
+TEST_F(CommandTest, AnInterruptedChartGoesOn) {
+  const std::vector<std::string> chart{"chart", "mpm",  "tiny.toml", "--transfers", "apic,pic",
+                                       "--dts", "2e-5", "--cells",   "0.025",       "--quiet"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), chart.begin(), chart.end());
+    return more;
+  };
+  ASSERT_EQ(run(with({"-o", "whole"})).exit, 0);
+  const pid_t child = start(with({"-o", "cut"}));
+  const fs::path second = base_ / "cut" / "runs" / "tiny_pic_cubic_h0.025_dt2e-05" / "series.csv";
+  for (int i = 0; i < 6000 && lines_of(content_of(second)).size() < 6; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  ::kill(child, SIGINT);
+  const Outcome stopped = finish(child);
+  ASSERT_EQ(stopped.exit, 130) << stopped.err;
+  EXPECT_EQ(summary("cut").at("status"), "interrupted");
+  EXPECT_EQ(lines_of(content_of(base_ / "cut" / "chart.csv")).size(), 2U) << "one run is there";
+  ASSERT_EQ(run(with({"-o", "cut", "--resume"})).exit, 0);
+  EXPECT_EQ(content_of(base_ / "cut" / "history.csv"), content_of(base_ / "whole" / "history.csv"));
+  EXPECT_EQ(Json::parse(content_of(second.parent_path() / "summary.json")).at("sessions"), 2);
+}
+
 TEST_F(CommandTest, OneProgressLineOnATerminal) {
   int master = -1, slave = -1;
   if (::openpty(&master, &slave, nullptr, nullptr, nullptr) != 0)
@@ -317,7 +340,7 @@ TEST_F(CommandTest, AFullDiskIsToldAndLeavesNothingHalfWritten) {
   const std::string series = content_of(base_ / "full" / "series.csv");
   EXPECT_EQ(series.back(), '\n');
   for (const std::string& row : lines_of(series))
-    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 19) << row;
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 20) << row;
   EXPECT_FALSE(fs::exists(base_ / "full" / "summary.json")) << "nothing says that it is complete";
   for (const auto& entry : fs::directory_iterator(base_ / "full"))
     EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();

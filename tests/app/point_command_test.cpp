@@ -198,6 +198,8 @@ TEST(ChartCommand, draws_the_point_driver) {
   ASSERT_EQ(run_command_line(6, argv), 0);
   for (const char* const name : {"chart.csv", "error_map.csv"})
     EXPECT_GT(fs::file_size(folder / name), 1000u) << name;
+  const toml::table input = toml::parse_file((folder / "input.toml").string());
+  EXPECT_EQ(input["chart"]["kind"].value<std::string>(), "point");
   fs::remove_all(folder);
 }
 
@@ -247,6 +249,17 @@ TEST(ChartCommand, draws_every_algorithm_of_a_fit) {
   }
   EXPECT_EQ(trace[1][0], "levenberg_marquardt");
   EXPECT_LT(std::stod(table[1][1]), 1e-20 * std::stod(trace[1][4])) << "exact data, exact fit";
+
+  // its input.toml makes the same chart
+  const std::string input = (folder / "input.toml").string(), again = out + "_again";
+  const char* const same[] = {"repose", "chart", input.c_str(), "--quiet", "-o", again.c_str()};
+  ASSERT_EQ(run_command_line(6, same), 0);
+  const auto summary_of = [](const fs::path& result) {
+    std::ifstream in(result / "summary.json");
+    return nlohmann::json::parse(in);
+  };
+  EXPECT_EQ(summary_of(folder), summary_of(again));
+  fs::remove_all(again);
   fs::remove_all(folder);
 }
 

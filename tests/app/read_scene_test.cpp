@@ -82,7 +82,11 @@ TEST(ReadScene, fills_in_the_defaults) {
   EXPECT_EQ(scene.right.kind, mpm::Wall::Kind::slip);
   EXPECT_EQ(scene.points_per_cell, 4);
   EXPECT_EQ(scene.kernel, mpm::Kernel::cubic);
-  EXPECT_EQ(scene.courant, 0.4);
+  EXPECT_EQ(scene.courant, 0.8);
+  EXPECT_EQ(scene.transfer, mpm::Transfer::relaxed);
+  EXPECT_EQ(scene_of(replaced(granular, "[domain]", "gravity = 0.0\n[domain]")).scene.transfer,
+            mpm::Transfer::apic)
+      << "nothing to derive a relaxation time from";
   EXPECT_FALSE(scene.dt);
   ASSERT_EQ(scene.bodies.size(), 1U);
   EXPECT_EQ(scene.bodies[0].law.options.at("form"), "elastoviscoplastic");
@@ -106,6 +110,37 @@ TEST(ReadScene, walls_apply_to_three_edges_unless_one_is_named) {
   EXPECT_EQ(scene.left.kind, mpm::Wall::Kind::friction);
   EXPECT_EQ(scene.top.friction, 0.4);
   EXPECT_EQ(scene.right.kind, mpm::Wall::Kind::open);
+}
+
+TEST(ReadScene, a_periodic_box_with_a_moving_lid) {
+  const mpm::Scene scene =
+      scene_of(
+          replaced(granular, "[[body]]", "walls = \"periodic\"\ntop = { speed = 0.25 }\n[[body]]"))
+          .scene;
+  EXPECT_EQ(scene.left.kind, mpm::Wall::Kind::periodic);
+  EXPECT_EQ(scene.right.kind, mpm::Wall::Kind::periodic);
+  EXPECT_EQ(scene.top.kind, mpm::Wall::Kind::no_slip);
+  EXPECT_EQ(scene.top.speed, 0.25);
+  EXPECT_EQ(
+      scene_of(replaced(granular, "[[body]]", "walls = \"periodic\"\n[[body]]")).scene.top.kind,
+      mpm::Wall::Kind::slip);
+  EXPECT_EQ(problems(replaced(granular, "[[body]]", "left = \"periodic\"\n[[body]]")),
+            "s.toml:3:2: where one of left and right is periodic the other must be so too");
+  EXPECT_EQ(problems(replaced(granular, "[[body]]", "top = \"periodic\"\n[[body]]")),
+            "s.toml:5:1: only left and right can be periodic");
+}
+
+TEST(ReadScene, a_disc_has_a_centre_and_a_radius) {
+  const std::string disc =
+      replaced(granular, "size = [0.2, 0.4]",
+               "shape = \"disc\"\ncentre = [0.3, 0.2]\nradius = 0.1\nhole = 0.05");
+  const mpm::Body body = scene_of(disc).scene.bodies.at(0);
+  ASSERT_TRUE(body.disc);
+  EXPECT_EQ(body.disc->hole, 0.05);
+  EXPECT_EQ(body.size, (std::array{0.2, 0.2}));
+  EXPECT_DOUBLE_EQ(body.origin[1], 0.1);
+  EXPECT_EQ(problems(replaced(disc, "hole = 0.05", "hole = 0.15")),
+            "s.toml:9:1: hole = 0.15 is out of range: must be [0, radius = 0.1)");
 }
 
 TEST(ReadScene, tension_cutoff_is_a_boolean) {
@@ -228,8 +263,9 @@ TEST(ReadSceneErrors, geometry) {
 
 TEST(ReadSceneErrors, relaxation_time_belongs_to_relaxed) {
   EXPECT_EQ(problems(granular + "[step]\ntransfer = \"relaxed\"\nrelaxation_time = 1e-3\n"), "");
-  EXPECT_EQ(problems(granular + "[step]\nrelaxation_time = 1e-3\n"),
-            "s.toml:19:1: only step.transfer = \"relaxed\" has a relaxation time");
+  EXPECT_EQ(problems(granular + "[step]\nrelaxation_time = 1e-3\n"), "") << "the default";
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"apic\"\nrelaxation_time = 1e-3\n"),
+            "s.toml:20:1: only step.transfer = \"relaxed\" has a relaxation time");
   EXPECT_EQ(problems(granular + "[step]\ntransfer = \"relaxd\"\n"),
             "s.toml:19:1: step.transfer must be one of \"pic\", \"flip\", \"apic\", \"aflip\", "
             "\"relaxed\", \"tpic\", \"xpic\", \"fmpm\"; got the string \"relaxd\"; did you mean "
@@ -246,12 +282,41 @@ TEST(ReadSceneErrors, order_belongs_to_xpic_and_fmpm) {
             "the integer 0");
 }
 
+TEST(ReadSceneErrors, implicit_viscosity_needs_a_viscosity_and_walls_it_can_hold) {
+  const std::string fluid =
+      replaced(granular, "name = \"mu_i\"", "name = \"mu_i\"\nform = \"regularised\"");
+  const std::string implicit = "[step]\nviscosity = \"implicit\"\n";
+  EXPECT_EQ(problems(fluid + implicit + "viscosity_tolerance = 1e-4\n"), "");
+  EXPECT_EQ(
+      problems(granular + implicit),
+      "s.toml:19:1: viscosity = \"implicit\" needs a body whose law is a viscosity: newtonian, "
+      "or mu_i with form = \"regularised\"");
+  EXPECT_EQ(
+      problems(replaced(fluid, "0.5625]\n", "0.5625]\nfloor = { friction = 0.4 }\n") + implicit),
+      "s.toml:5:1: a wall with friction does not go with step.viscosity = \"implicit\": its "
+      "limit on the shear is not part of the solve; \"no_slip\", \"slip\" and \"open\" do");
+  EXPECT_EQ(
+      problems(fluid + implicit + "transfer = \"tpic\"\n"),
+      "s.toml:21:1: transfer = \"tpic\" does not go with step.viscosity = \"implicit\": the strain "
+      "rates that it solves for are the affine gradients of \"relaxed\", \"apic\", \"aflip\", "
+      "\"flip\" and \"pic\"");
+  EXPECT_EQ(problems(fluid + "[step]\nviscosity = \"implicite\"\n"),
+            "s.toml:20:1: step.viscosity must be one of \"explicit\", \"implicit\"; got the string "
+            "\"implicite\"; did you mean \"implicit\"?");
+  EXPECT_EQ(problems(fluid + "[step]\nviscosity_tolerance = 1e-4\n"),
+            "s.toml:20:1: only step.viscosity = \"implicit\" has a tolerance");
+  EXPECT_EQ(
+      problems(fluid + implicit + "viscosity_tolerance = 0.5\n"),
+      "s.toml:21:1: step.viscosity_tolerance = 0.5 is out of range: error of an implicit step's "
+      "velocity over what its forces bring must be a number in (0, 0.1]");
+}
+
 TEST(ReadSceneErrors, courant_or_dt) {
   EXPECT_EQ(problems(granular + "[step]\ncourant = 0.3\ndt = 1e-5\n"),
             "s.toml:20:1: give either step.courant or step.dt: a fixed step leaves no choice");
-  EXPECT_EQ(problems(granular + "[step]\ncourant = 1.2\n"),
-            "s.toml:19:1: step.courant = 1.2 is out of range: share of the stable step must be a "
-            "number in (0, 1]");
+  EXPECT_EQ(problems(granular + "[step]\ncourant = 1.5\n"),
+            "s.toml:19:1: step.courant = 1.5 is out of range: share of the stable step must be a "
+            "number in (0, 1.4]");
 }
 
 TEST(Overrides, replace_and_add_keys) {

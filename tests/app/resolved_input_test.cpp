@@ -31,6 +31,8 @@ void expect_same(const SceneFile& a, const SceneFile& b) {
   EXPECT_EQ(s.h, t.h);
   EXPECT_EQ(s.points_per_cell, t.points_per_cell);
   EXPECT_EQ(s.kernel, t.kernel);
+  EXPECT_EQ(s.viscosity, t.viscosity);
+  EXPECT_EQ(s.viscosity_tolerance, t.viscosity_tolerance);
   EXPECT_EQ(s.courant, t.courant);
   EXPECT_EQ(s.dt, t.dt);
   EXPECT_EQ(s.frame_interval, t.frame_interval);
@@ -90,6 +92,14 @@ TEST(ResolvedInput, keeps_every_digit_and_every_kind_of_key) {
   expect_same(first, reread(text));
   EXPECT_EQ(first.scene.bodies[0].name, "a \"b\" \\ c");
   EXPECT_TRUE(first.scene.bodies[1].lithostatic);
+}
+
+TEST(ResolvedInput, keeps_the_implicit_viscosity) {
+  InputFile file = InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_newtonian.toml");
+  SceneFile first = read_scene(file);
+  first.scene.viscosity = mpm::Viscosity::implicit_solve;
+  first.scene.viscosity_tolerance = 1.2345678901234567e-4;
+  expect_same(first, reread(resolved_input(first, "From a test")));
 }
 
 TEST(ResolvedInput, derived_parameters_are_comments) {

@@ -300,7 +300,7 @@ TYPED_TEST(LawDerivative, UpdateConvergesToTheIntegralOfRate) {
       }
       EXPECT_LT(error[2], 0.02) << example.label << " path " << path;
     }
-    if (L::has_stress_memory) {
+    if (yields<L> && L::has_stress_memory) {
       EXPECT_GT(first_order, 6) << example.label << ": hardly any path yielded";
     }
   }

@@ -219,7 +219,7 @@ TEST(LawOptions, UnknownMissingAndForeign) {
             (std::pair<std::string, std::string>{
                 "name",
                 "unknown law \"mu_I\"; did you mean \"mu_i\"? (known: \"modified_cam_clay\", "
-                "\"mu_i\", \"newtonian\")"}));
+                "\"mu_i\", \"newtonian\", \"neo_hookean\")"}));
   EXPECT_EQ(refusal_of({"mu_i", {{"compression", "v-ln_p"}}, column}),
             (std::pair<std::string, std::string>{
                 "compression", "mu_i has no option 'compression'; its option is 'form'"}));

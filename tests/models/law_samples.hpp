@@ -68,6 +68,10 @@ inline std::vector<LawExample> examples_of(const LawInfo& law) {
                     spec({{"eta", 10.0}, {"K", 26000.0}, {"rho_0", 1300.0}, {"alpha", 1.0}}), 1e3,
                     1e-2, 1e-4});
   }
+  if (name == "neo_hookean") {
+    list.push_back({"rubber", spec({{"E", 1e7}, {"nu", 0.3}, {"rho_0", 1000.0}}), 1e5, 2e-2, 1e-4});
+    list.push_back({"cork", spec({{"E", 1e5}, {"nu", 0.0}, {"rho_0", 200.0}}), 3e3, 0.05, 1e-3});
+  }
   if (list.empty()) ADD_FAILURE() << "no example for law " << name << " " << option;
   return list;
 }
@@ -121,6 +125,15 @@ bool same_bits(const LawPoint<L>& a, const LawPoint<L>& b) {
   for (std::size_t k = 0; k < L::state.size(); ++k) all = all && same(a.state[k], b.state[k]);
   return all;
 }
+
+/// Laws without a yield surface: elastic, or viscous at once.
+template <class L>
+constexpr bool yields = L::name != "newtonian" && L::name != "neo_hookean";
+
+/// Laws whose pressure may be negative.
+template <class L>
+constexpr bool carries_tension = L::name == "neo_hookean" ||
+                                 (L::name == "newtonian" && L::option == "false");
 
 /// Seeded, so that a failure repeats.
 class Random {

@@ -171,10 +171,23 @@ class Model {
   void update_stress(PointState& point, double dt) const {
     std::array<std::array<double, pack_size>, 5> motion{};
     std::array<std::array<double, pack_size>, STATE + max_state> field{};
-    motion[0].fill(dt * point[LXX]);
-    motion[1].fill(dt * point[LYY]);
-    motion[3].fill(0.5 * dt * (point[LXY] + point[LYX]));
-    motion[4].fill(0.5 * dt * (point[LYX] - point[LXY]));
+    // ln(I + A) = A − ½A² + O(A³), A = Δt L: its symmetric part strains, its other part turns
+    const Matrix A{{{dt * point[LXX], dt * point[LXY]}, {dt * point[LYX], dt * point[LYY]}}};
+    const auto logarithm = [&](std::size_t i, std::size_t j) {
+      return A[i][j] - 0.5 * (A[i][0] * A[0][j] + A[i][1] * A[1][j]);
+    };
+    motion[0].fill(logarithm(0, 0));
+    motion[1].fill(logarithm(1, 1));
+    motion[3].fill(0.5 * (logarithm(0, 1) + logarithm(1, 0)));
+    motion[4].fill(0.5 * (logarithm(1, 0) - logarithm(0, 1)));
+    if (!materials_[point.body]->law().has_stress_memory) {  // D itself, but with that volume
+      const double volume = logarithm(0, 0) + logarithm(1, 1) - A[0][0] - A[1][1];
+      motion[0].fill(A[0][0] + volume / 3.0);
+      motion[1].fill(A[1][1] + volume / 3.0);
+      motion[2].fill(volume / 3.0);
+      motion[3].fill(0.5 * (A[0][1] + A[1][0]));
+      motion[4].fill(0.5 * (A[1][0] - A[0][1]));
+    }
     for (std::size_t f = 0; f < field.size(); ++f) field[f].fill(point[f]);
     Batch batch;
     batch.count = 1;

@@ -72,6 +72,8 @@ inline Scene empty_box(double width, double height, double h) {
   scene.gravity = 0.0;
   scene.floor = scene.left = scene.right = scene.top = {Wall::Kind::slip};
   scene.end_time = 1.0;
+  scene.transfer = Transfer::apic;
+  scene.courant = 0.4;
   return scene;
 }
 

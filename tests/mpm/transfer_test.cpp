@@ -43,7 +43,7 @@ class TransferTest : public ::testing::Test {
   static Tile scattered(const PointSet& points) {
     Tile tile;
     for (auto& channel : tile) channel.fill(0.0);
-    points_to_tile<K, true>(points, {0, points.count}, h, origin, tile);
+    points_to_tile<K, true, false>(points, {0, points.count}, h, origin, nullptr, tile);
     return tile;
   }
   static double x_of(std::size_t n) { return (origin[0] + static_cast<int>(n) % tile_stride) * h; }
@@ -53,8 +53,8 @@ class TransferTest : public ::testing::Test {
 template <class K>
 void gather(const VelocityTile& tile, PointSet& points) {
   AlignedVector<double> vx(padded(points.count)), vy(padded(points.count));
-  tile_to_points<K, Keeps::nothing>(tile, origin, h, {0, points.count}, Retention{}, points,
-                                    {vx.data(), vy.data()});
+  tile_to_points<K, Keeps::nothing, false>(tile, origin, h, {0, points.count}, Retention{}, points,
+                                           {vx.data(), vy.data()});
   for (std::size_t s = 0; s < points.count; ++s) {
     EXPECT_EQ(vx[s], points[VX][s]);
     EXPECT_EQ(vy[s], points[VY][s]);

@@ -284,7 +284,7 @@ TEST_P(WallsTest, FrictionWithinItsLimitIsNoSlip) {
 // The rough walls slide here and stick or part there, by the velocities after forces.
 TEST_P(WallsTest, MirrorRepeatsWhatTheWallsDid) {
   scramble(4);
-  NodeField copy(grid_.node_blocks.size());
+  NodeVector copy(grid_.node_blocks.size());
   for (std::size_t k = 0; k < copy.size(); ++k)
     copy[k] = {grid_.node_blocks[k].ux, grid_.node_blocks[k].uy};
   const Wall rough{Wall::Kind::friction, 0.5};

@@ -1,0 +1,167 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/commands/chart.hpp"
+#include "app/file_kind.hpp"
+#include "app/interrupt.hpp"
+#include "app/mpm_sweep.hpp"
+#include "app/mpm_sweep_picture.hpp"
+#include "app/mpm_sweep_report.hpp"
+#include "app/plot/gnuplot.hpp"
+#include "app/resolved_input.hpp"
+#include "app/result_folder.hpp"
+#include "app/run_record.hpp"
+#include "embedded_scene.hpp"
+#include "repose_version.hpp"
+
+namespace repose::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class MpmChart {
+ public:
+  MpmChart(const CommonOptions& options, const std::string& file, bool quick)
+      : options_(options),
+        input_(file.empty() ? InputFile::parse(flat_mu_i_scene, "flat_mu_i.toml", options.sets)
+                            : InputFile::read(file, options.sets)),
+        threads_(options.threads > 0 ? options.threads : 1) {
+    require_kind(input_, FileKind::scene, "chart mpm");
+    const ChartTable chart = read_chart(input_);
+    scene_ = read_scene(input_);
+    sweep_ = with_defaults(chart.sweep, scene_.scene, quick);
+    try {
+      runs_ = runs_of(scene_, sweep_);
+    } catch (const InputError& error) {
+      input_.report(error);
+      input_.throw_if_bad();
+    }
+  }
+
+  ExitCode run() {
+    const ResultFolder folder(options_.output.empty() ? ResultFolder::default_path("chart_mpm")
+                                                      : std::filesystem::path(options_.output));
+    folder.remove_old_outputs();
+    folder.write_file("input.toml", resolved_input(scene_, origin_line(input_.name(), options_)) +
+                                        chart_text(sweep_));
+    const Usage before = usage();
+    std::string status = "done";
+    std::size_t count = 0;
+    const InterruptGuard interrupt;
+    for (SweepRun& run : runs_) {
+      if (interrupt.requested() ||
+          carry_out(run, folder.file("runs"), threads_, options_.resume) == ExitCode::interrupted) {
+        status = "interrupted";
+        break;
+      }
+      ++count;
+      folder.write_file("chart.csv", sweep_csv(runs_));
+      tell(run, count);
+    }
+    folder.write_file("history.csv", history_csv(runs_));
+    const std::vector<SweepSeries> series = series_of(runs_);
+    const auto sound =
+        std::count_if(runs_.begin(), runs_.end(), [](const SweepRun& run) { return run.done(); });
+    if (sound == 0 && status == "done") status = "failed";
+    std::vector<std::string> files{"chart.csv", "history.csv"};
+    if (sound > 0) draw(folder, series, files);
+    const Json answer = sweep_answer(series);
+    write_summary(folder, status, static_cast<std::size_t>(sound), answer, before);
+    if (!options_.quiet && !options_.json)
+      fmt::print("{}, from the longest step to the shortest:\n{}{}: {}\n", scene_.scene.name,
+                 answer_text(answer), folder.path().string(), fmt::join(files, ", "));
+    if (status == "interrupted") {
+      if (!options_.quiet && !options_.json)
+        fmt::print(stderr,
+                   "interrupted after {} of {} runs; the same command with --resume "
+                   "continues\n",
+                   count, runs_.size());
+      return ExitCode::interrupted;
+    }
+    return status == "failed" ? ExitCode::numerical_failure : ExitCode::done;
+  }
+
+ private:
+  void tell(const SweepRun& run, std::size_t count) const {
+    if (options_.json)
+      fmt::print("{}\n", Json{{"event", "run"},
+                              {"name", run.scene().name},
+                              {"run", count},
+                              {"runs", runs_.size()},
+                              {"status", run.status()},
+                              {"front_m", run.summary["front_m"]},
+                              {"cpu_s", run.summary["cpu_s"]}}
+                             .dump());
+    else if (!options_.quiet)
+      fmt::print("[{}/{}] {}: {}, front {:.4f} m, {:.2f} s of CPU\n", count, runs_.size(),
+                 run.scene().name, run.status(), run.figure("front_m"), run.figure("cpu_s"));
+    std::fflush(stdout);
+  }
+
+  void draw(const ResultFolder& folder, const std::vector<SweepSeries>& series,
+            std::vector<std::string>& files) const {
+    const std::string name =
+        fmt::format("{} to {:.4g} s", scene_.scene.name, scene_.scene.end_time);
+    const auto render = [&](const Figure& figure, const std::string& file) {
+      try {
+        figure.render_svg(folder.file(file));
+        files.push_back(file);
+      } catch (const PlotError& error) {
+        fmt::print(stderr, "warning: no {}: {}\n", file, error.what());
+      }
+    };
+    render(step_figure(series, name), "chart.svg");
+    render(history_figure(series, name), "history.svg");
+    if (sweep_.cells.size() > 1) render(cost_figure(series, name), "cost.svg");
+  }
+
+  void write_summary(const ResultFolder& folder, const std::string& status, std::size_t sound,
+                     const Json& answer, const Usage& before) const {
+    const Usage after = usage();
+    Json summary{{"repose", version_string},
+                 {"kind", "chart_mpm"},
+                 {"status", status},
+                 {"name", scene_.scene.name},
+                 {"seed", options_.seed},
+                 {"runs", runs_.size()},
+                 {"runs_done", sound},
+                 {"threads", threads_},
+                 {"wall_s", after.wall_s - before.wall_s},
+                 {"cpu_s", after.cpu_s - before.cpu_s},
+                 {"allowed_change", allowed_change},
+                 {"answer", answer},
+                 {"warnings", warnings()}};
+    folder.write_file("summary.json", summary.dump(2) + "\n");
+    if (options_.json) fmt::print("{}\n", summary.dump());
+  }
+
+  /// Of the runs, each with its name.
+  std::vector<std::string> warnings() const {
+    std::vector<std::string> list = scene_.notes;
+    for (const SweepRun& run : runs_) {
+      if (run.status().empty()) continue;
+      for (const auto& warning : run.summary.value("warnings", nlohmann::json::array()))
+        list.push_back(fmt::format("{}: {}", run.scene().name, warning.get<std::string>()));
+      if (run.status() == "failed")
+        list.push_back(fmt::format("{}: failed: {}", run.scene().name,
+                                   run.summary.value("reason", std::string())));
+    }
+    return list;
+  }
+
+  const CommonOptions& options_;
+  InputFile input_;
+  int threads_;
+  SceneFile scene_;
+  Sweep sweep_;
+  std::vector<SweepRun> runs_;
+};
+
+}  // namespace
+
+ExitCode chart_mpm(const CommonOptions& options, const std::string& file, bool quick) {
+  return MpmChart(options, file, quick).run();
+}
+
+}  // namespace repose::app

@@ -1,0 +1,223 @@
+#include "app/mpm_sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "app/resolved_input.hpp"
+#include "app/result_folder.hpp"
+#include "app/run_record.hpp"
+
+namespace repose::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int rows_of_series = 60;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return in ? std::move(text).str() : "";
+}
+
+/// The columns of a table of numbers that this program has written.
+std::map<std::string, std::vector<double>, std::less<>> columns_of(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  std::vector<std::string> names;
+  std::istringstream head(line);
+  for (std::string name; std::getline(head, name, ',');) names.push_back(name);
+  std::map<std::string, std::vector<double>, std::less<>> columns;
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (const std::string& name : names) {
+      if (!std::getline(cells, cell, ',')) throw IoError(file, "has a row that is too short");
+      columns[name].push_back(std::stod(cell));
+    }
+  }
+  if (names.empty()) throw IoError(file, "cannot read");
+  return columns;
+}
+
+/// The step as it was asked for: fixed steps [s], or Courant numbers, which compare among
+/// themselves.
+double nominal_step(const mpm::Scene& scene) { return scene.dt.value_or(scene.courant); }
+
+std::string name_of_run(const mpm::Scene& base, const mpm::Scene& scene) {
+  const std::string step =
+      scene.dt ? fmt::format("dt{}", *scene.dt) : fmt::format("courant{}", scene.courant);
+  return fmt::format("{}_{}_{}_h{}_{}", base.name, mpm::name_of(scene.transfer),
+                     mpm::name_of(scene.kernel), scene.h, step);
+}
+
+double initial_height(const mpm::Scene& scene) {
+  double top = 0.0;
+  for (const mpm::Body& body : scene.bodies) top = std::max(top, body.origin[1] + body.size[1]);
+  return top;
+}
+
+void read_result(SweepRun& run, const fs::path& folder) {
+  run.summary = nlohmann::json::parse(text_of(folder / "summary.json"), nullptr, false);
+  if (!run.summary.is_object())
+    throw IoError(folder / "summary.json", "is not the summary of a run");
+  run.series = columns_of(folder / "series.csv");
+  if (!run.done()) return;
+  auto profile = columns_of(folder / "profile.csv");
+  run.x_m = std::move(profile["x_m"]);
+  run.depth_m = std::move(profile["depth_m"]);
+}
+
+}  // namespace
+
+Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick) {
+  if (sweep.transfers.empty())
+    for (std::size_t k = 0; k < mpm::transfer_names.size(); ++k)
+      sweep.transfers.push_back(static_cast<mpm::Transfer>(k));
+  if (sweep.kernels.empty()) sweep.kernels = {scene.kernel};
+  if (sweep.cells.empty()) {
+    sweep.cells = {4.0 * scene.h};
+    if (!quick) sweep.cells.push_back(2.0 * scene.h);
+  }
+  if (sweep.courants.empty() && sweep.dts.empty()) {
+    sweep.courants = {0.8, 0.4};
+    if (!quick) sweep.courants.insert(sweep.courants.end(), {0.2, 0.1});
+  }
+  return sweep;
+}
+
+double SweepRun::figure(std::string_view key) const {
+  const auto found = summary.find(key);
+  return found != summary.end() && found->is_number() ? found->get<double>() : std::nan("");
+}
+
+std::vector<SweepRun> runs_of(const SceneFile& base, const Sweep& sweep) {
+  std::vector<SweepRun> runs;
+  const auto descending = [](std::vector<double> values) {
+    std::sort(values.rbegin(), values.rend());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    return values;
+  };
+  for (const mpm::Transfer transfer : sweep.transfers)
+    for (const mpm::Kernel kernel : sweep.kernels)
+      for (const double h : descending(sweep.cells)) {
+        SceneFile file = base;
+        mpm::Scene& scene = file.scene;
+        scene.transfer = transfer;
+        scene.kernel = kernel;
+        scene.h = h;
+        scene.frame_interval = 0.0;
+        scene.series_interval = scene.end_time / rows_of_series;
+        mpm::raise_top_to_cells(scene);
+        try {
+          mpm::validate(scene);
+        } catch (const InputError& error) {
+          throw InputError("chart.cells", fmt::format("cells of {} m: {}", h, error.what()));
+        }
+        const auto add = [&](double courant, std::optional<double> dt) {
+          SweepRun& run = runs.emplace_back(SweepRun{file, {}, {}, {}, {}});
+          run.file.scene.courant = courant;
+          run.file.scene.dt = dt;
+          run.file.scene.name = name_of_run(base.scene, run.scene());
+        };
+        for (const double courant : descending(sweep.courants)) add(courant, {});
+        for (const double dt : descending(sweep.dts)) add(mpm::Scene{}.courant, dt);
+      }
+  return runs;
+}
+
+std::vector<SweepSeries> series_of(std::span<const SweepRun> runs) {
+  std::vector<SweepSeries> list;
+  for (const SweepRun& run : runs) {
+    const auto same = [&](const SweepSeries& s) {
+      return s.scene().transfer == run.scene().transfer && s.scene().kernel == run.scene().kernel &&
+             s.scene().h == run.scene().h;
+    };
+    const auto found = std::find_if(list.begin(), list.end(), same);
+    (found == list.end() ? list.emplace_back() : *found).runs.push_back(&run);
+  }
+  return list;
+}
+
+const SweepRun* SweepSeries::finest() const {
+  const SweepRun* finest = nullptr;
+  for (const SweepRun* run : runs) {
+    if (run->status().empty()) return nullptr;
+    if (run->done() && (finest == nullptr || run->mean_dt() < finest->mean_dt())) finest = run;
+  }
+  return finest;
+}
+
+std::vector<const SweepRun*> SweepSeries::done_runs() const {
+  std::vector<const SweepRun*> list;
+  for (const SweepRun* run : runs)
+    if (run->done()) list.push_back(run);
+  std::stable_sort(list.begin(), list.end(), [](const SweepRun* a, const SweepRun* b) {
+    return a->mean_dt() > b->mean_dt();
+  });
+  return list;
+}
+
+std::optional<SweepChange> change_between(const SweepRun& run, const SweepRun& reference) {
+  if (!run.done() || !reference.done() || run.depth_m.size() != reference.depth_m.size()) return {};
+  const double front = reference.figure("front_m"), height = reference.figure("height_m");
+  if (!(front > 0.0) || !(height > 0.0)) return {};
+  const double H_0 = initial_height(run.scene());
+  SweepChange change{run.figure("front_m") / front - 1.0, run.figure("height_m") / height - 1.0,
+                     0.0, 0.0};
+  for (std::size_t i = 0; i < run.depth_m.size(); ++i) {
+    const double difference = std::abs(run.depth_m[i] - reference.depth_m[i]);
+    // the end columns are half as wide (deposit.hpp)
+    const double width =
+        i == 0 || i + 1 == run.depth_m.size() ? 0.5 * run.scene().h : run.scene().h;
+    change.profile_mean += difference * width / (front * H_0);
+    change.profile_max = std::max(change.profile_max, difference / H_0);
+  }
+  return change;
+}
+
+std::optional<SweepChange> change_when_quartered(const SweepSeries& series) {
+  std::optional<SweepChange> worst;
+  for (const SweepRun* run : series.runs)
+    for (const SweepRun* shorter : series.runs) {
+      if (run->scene().dt.has_value() != shorter->scene().dt.has_value()) continue;
+      const double ratio = nominal_step(run->scene()) / nominal_step(shorter->scene());
+      if (std::abs(ratio - 4.0) > 1e-9) continue;
+      const auto change = change_between(*run, *shorter);
+      if (!change) return {};
+      if (!worst) worst = SweepChange{};
+      worst->front = std::max(worst->front, std::abs(change->front));
+      worst->height = std::max(worst->height, std::abs(change->height));
+      worst->profile_mean = std::max(worst->profile_mean, change->profile_mean);
+      worst->profile_max = std::max(worst->profile_max, change->profile_max);
+    }
+  return worst;
+}
+
+ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool resume) {
+  RunRequest request;
+  request.file = run.file;
+  request.file.notes.clear();
+  request.input = resolved_input(run.file, "One run of repose chart mpm.");
+  request.folder = folder / run.scene().name;
+  request.threads = threads;
+  request.picture = false;
+  request.quiet = true;
+  const std::string there = noted_status(request.folder / "summary.json");
+  const bool same = resume && text_of(request.folder / "input.toml") == request.input;
+  if (!same || (there != "done" && there != "failed")) {
+    request.resume = same && there == "interrupted" && fs::exists(request.folder / "checkpoint.h5");
+    const ExitCode code = run_scene(request);
+    if (code == ExitCode::interrupted) return code;
+  }
+  read_result(run, request.folder);
+  return ExitCode::done;
+}
+
+}  // namespace repose::app

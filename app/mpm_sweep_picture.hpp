@@ -1,0 +1,22 @@
+#pragma once
+/// \file
+/// The pictures of `repose chart mpm`. A transfer keeps its colour and marker in all of them; one
+/// column of panels per cell size and kernel.
+
+#include "app/mpm_sweep.hpp"
+#include "app/plot/figure.hpp"
+
+namespace repose::app {
+
+/// Over the mean step: front, height, kinetic energy at the end; and the profile's change from the
+/// shortest step over CPU seconds (work and precision).
+Figure step_figure(const std::vector<SweepSeries>& series, const std::string& name);
+
+/// Front and kinetic energy over time: the longest step dashed, the shortest solid.
+Figure history_figure(const std::vector<SweepSeries>& series, const std::string& name);
+
+/// CPU seconds over the cell size with the slope h^-3 of a fixed scene, speed and memory over the
+/// number of points; one line per transfer, kernel and step. For several cell sizes.
+Figure cost_figure(const std::vector<SweepSeries>& series, const std::string& name);
+
+}  // namespace repose::app

@@ -1,0 +1,27 @@
+#pragma once
+/// \file
+/// The tables of `repose chart mpm`, and its answer: does the run-out depend on the step?
+
+#include "app/mpm_sweep.hpp"
+
+namespace repose::app {
+
+/// chart.csv: a row per run that has a result; the changes are those from the run with the shortest
+/// step of the same transfer, kernel and cells, and empty until all of these have a result.
+std::string sweep_csv(std::span<const SweepRun> runs);
+
+/// history.csv: every row of the runs' series.
+std::string history_csv(std::span<const SweepRun> runs);
+
+/// What the answer is measured by: front, height and profile may change by 1 % (of themselves, of
+/// H_0) when the step is quartered.
+constexpr double allowed_change = 0.01;
+
+/// Per transfer, kernel and cell size: the ends at the longest and shortest step, the changes
+/// between both and when the step is quartered, and whether the latter stay below allowed_change.
+nlohmann::ordered_json sweep_answer(const std::vector<SweepSeries>& series);
+
+/// The answer as a table for people.
+std::string answer_text(const nlohmann::ordered_json& answer);
+
+}  // namespace repose::app

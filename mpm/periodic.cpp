@@ -1,0 +1,74 @@
+#include "mpm/periodic.hpp"
+
+namespace repose::mpm {
+namespace {
+
+constexpr int shared = 2;  ///< nodes on either side of an edge that a point beyond it can reach
+
+struct Nodes {
+  Grid::NodeRef at[2];  // left, right; either may be far from all material
+
+  template <class F>
+  void each(F&& f) const {
+    for (const Grid::NodeRef& node : at)
+      if (node.block != nullptr) f(*node.block, node.place);
+  }
+};
+
+NodeSums sums_of(const Nodes& nodes) {
+  NodeSums sums;
+  nodes.each([&](const NodeBlock& b, std::size_t n) {
+    const double m = b.mass[n];
+    sums.before += 0.5 * m * (b.ux[n] * b.ux[n] + b.uy[n] * b.uy[n]);
+    sums.after += 0.5 * m * (b.vx[n] * b.vx[n] + b.vy[n] * b.vy[n]);
+    sums.impulse_work += m * ((b.vx[n] - b.ux[n]) * b.ux[n] + (b.vy[n] - b.uy[n]) * b.uy[n]);
+  });
+  return sums;
+}
+
+void join(const Nodes& nodes) {
+  using Field = std::array<double, block_nodes> NodeBlock::*;
+  double mass = 0.0;
+  nodes.each([&](const NodeBlock& b, std::size_t n) { mass += b.mass[n]; });
+  if (mass == 0.0) return;
+  for (const Field v :
+       {&NodeBlock::ux, &NodeBlock::uy, &NodeBlock::vx, &NodeBlock::vy, &NodeBlock::elastic}) {
+    double momentum = 0.0;
+    nodes.each([&](const NodeBlock& b, std::size_t n) { momentum += b.mass[n] * (b.*v)[n]; });
+    nodes.each([&](NodeBlock& b, std::size_t n) { (b.*v)[n] = momentum / mass; });
+  }
+  // the real masses stay apart, so that sums over nodes count each once
+  nodes.each([&](NodeBlock& b, std::size_t n) { b.mirrored_mass[n] = mass; });
+}
+
+}  // namespace
+
+NodeSums join_periodic_edges(Grid& grid) {
+  NodeSums change;
+  for (int j = -shared; j <= grid.ny() + shared; ++j)
+    for (int i = -shared; i <= shared; ++i) {
+      const Nodes nodes{{grid.node(i, j), grid.node(i + grid.nx(), j)}};
+      const NodeSums apart = sums_of(nodes);
+      join(nodes);
+      const NodeSums joined = sums_of(nodes);
+      change.before += joined.before - apart.before;
+      change.after += joined.after - apart.after;
+      change.impulse_work += joined.impulse_work - apart.impulse_work;
+    }
+  return change;
+}
+
+double wrap_points(PointSet& points, double width, double gravity_x) {
+  double energy = 0.0;
+  for (std::size_t s = 0; s < points.slots(); ++s) {
+    if (points.id[s] < 0) continue;
+    const double x = points[X][s];
+    const double shift = x < 0.0 ? width : x >= width ? -width : 0.0;
+    if (shift == 0.0) continue;
+    points[X][s] = x + shift;
+    energy -= points[MASS][s] * gravity_x * shift;
+  }
+  return energy;
+}
+
+}  // namespace repose::mpm
