@@ -140,6 +140,11 @@ void read_step(TomlReader table, mpm::Scene& scene) {
     table.report("transfer", "without gravity, relaxed needs step.relaxation_time [s]");
   if (!relaxed && scene.relaxation_time)
     table.report("relaxation_time", "only step.transfer = \"relaxed\" has a relaxation time");
+  const bool has_order =
+      scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm;
+  if (!has_order && table.has("order"))
+    table.report("order", "only step.transfer = \"xpic\" and \"fmpm\" have an order");
+  scene.order = static_cast<int>(table.integer("order", "1 is pic", 1, 100, scene.order));
   scene.pressure_averaging =
       table.number({"pressure_averaging", "-", "of neighbouring points, per unit of shear strain",
                     not_negative, scene.pressure_averaging});

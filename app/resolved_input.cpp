@@ -150,18 +150,22 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
   out += "\n[grid]\n" + line("h", number(scene.h), "m") +
          line("points_per_cell", std::to_string(scene.points_per_cell)) +
          line("kernel", toml_string(mpm::name_of(scene.kernel)));
-  out +=
-      "\n[step]\n" + line("transfer", toml_string(mpm::name_of(scene.transfer))) +
-      // left out where it follows from h, so that it goes on following in a chart over h
-      (scene.relaxation_time ? line("relaxation_time", number(*scene.relaxation_time), "s") : "") +
-      line("viscosity",
-           toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
-      (scene.viscosity == mpm::Viscosity::implicit_solve
-           ? line("viscosity_tolerance", number(scene.viscosity_tolerance),
-                  "of the velocity change")
-           : "") +
-      (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
-                : line("courant", number(scene.courant), "of the largest stable step"));
+  out += "\n[step]\n" + line("transfer", toml_string(mpm::name_of(scene.transfer))) +
+         // left out where it follows from h, so that it goes on following in a chart over h
+         (scene.transfer == mpm::Transfer::relaxed && scene.relaxation_time
+              ? line("relaxation_time", number(*scene.relaxation_time), "s")
+              : "") +
+         (scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm
+              ? line("order", std::to_string(scene.order), "1 is pic")
+              : "") +
+         line("viscosity",
+              toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
+         (scene.viscosity == mpm::Viscosity::implicit_solve
+              ? line("viscosity_tolerance", number(scene.viscosity_tolerance),
+                     "of the velocity change")
+              : "") +
+         (scene.dt ? line("dt", number(*scene.dt), "s, fixed")
+                   : line("courant", number(scene.courant), "of the largest stable step"));
   out += "\n[output]\n" + line("frame_interval", number(scene.frame_interval), "s, 0 for none") +
          line("series_interval", number(scene.series_interval), "s") +
          line("colour", toml_string(file.colour == PictureField::mises ? "mises" : "density"),

@@ -31,11 +31,14 @@ void body_force_to_tile(const PointSet& points, const Range& range, std::span<co
   }
 }
 
-template void body_force_to_tile<CubicKernel>(const PointSet&, const Range&,
-                                              std::span<const double>, std::span<const double>,
-                                              double, std::array<int, 2>, Tile&);
-template void body_force_to_tile<QuadraticKernel>(const PointSet&, const Range&,
-                                                  std::span<const double>, std::span<const double>,
-                                                  double, std::array<int, 2>, Tile&);
+#define REPOSE_BODY_FORCE(KERNEL)                                                                  \
+  template void body_force_to_tile<KERNEL>(const PointSet&, const Range&, std::span<const double>, \
+                                           std::span<const double>, double, std::array<int, 2>,    \
+                                           Tile&);
+REPOSE_BODY_FORCE(CubicKernel)
+REPOSE_BODY_FORCE(QuadraticKernel)
+REPOSE_BODY_FORCE(SplineGradient<CubicKernel>)
+REPOSE_BODY_FORCE(SplineGradient<QuadraticKernel>)
+#undef REPOSE_BODY_FORCE
 
 }  // namespace repose::mpm

@@ -55,6 +55,13 @@ struct alignas(64) NodeBlock {
   std::array<std::int32_t, 9> point_block{};  ///< the point blocks around; −1 where there is none
 };
 
+/// A vector at every node of a block.
+struct alignas(64) NodeField {
+  std::array<double, block_nodes> x{}, y{};
+};
+/// One per node block of the grid, in its order.
+using NodeVector = std::vector<NodeField>;
+
 class Grid {
  public:
   /// `nx` × `ny` cells of size h; one ring of blocks is kept around the box for ghosts.

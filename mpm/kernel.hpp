@@ -15,6 +15,12 @@
 
 namespace repose::mpm {
 
+/// Where a velocity gradient comes from, and with it the force, its adjoint: the first moment,
+///   D⁻¹ Σ w v_i (x_i − x_p)ᵀ  and  −Σ w V D⁻¹ σ (x_i − x_p),  or the spline's own gradient,
+///   Σ v_i (∇w_i)ᵀ             and  −Σ V σ ∇w_i  (SplineGradient below).
+/// A kernel says which it is (spline_gradient), and by how much a sum over distances in units of h,
+/// or over derivatives in units of 1/h, is scaled (gradient_scale/h).
+
 /// Nodes in the widest stencil row; the quadratic kernel leaves the last with weight 0.
 constexpr int stencil_width = 4;
 
@@ -37,6 +43,8 @@ inline RowPair offsets(const RowPair& t) { return RowPair(-1.0, 0.0, 1.0, 2.0) -
 struct CubicKernel {
   static constexpr int rows = 4;
   static constexpr double inverse_moment = 3.0;  ///< Σ w d² = 1/3
+  static constexpr bool spline_gradient = false;
+  static constexpr double gradient_scale = inverse_moment;
 
   /// The node at or below the point.
   template <class T>
@@ -58,6 +66,15 @@ struct CubicKernel {
     return {w0, w1, w2, w3};
   }
 
+  /// dw/dξ.
+  template <class T>
+  static std::array<T, 4> slopes(const T& t) {
+    const T half(0.5), two(2.0), three_halves(1.5);
+    const T u = T(1.0) - t;
+    return {-half * u * u, t * (three_halves * t - two), u * (two - three_halves * u),
+            half * t * t};
+  }
+
   static Weights of_point(double t_x, double t_y) {
     const RowPair t(t_x, t_y);
     const double s = 1.0 / 6.0;
@@ -65,12 +82,18 @@ struct CubicKernel {
                                {3 * s, -6 * s, 3 * s, 0.0}, {-s, 3 * s, -3 * s, s}),
             detail::offsets(t)};
   }
+  static RowPair slopes_of_point(double t_x, double t_y) {
+    return detail::polynomial(RowPair(t_x, t_y), {-0.5, 0.0, 0.5, 0.0}, {1.0, -2.0, 1.0, 0.0},
+                              {-0.5, 1.5, -1.5, 0.5}, {0.0, 0.0, 0.0, 0.0});
+  }
 };
 
 /// Quadratic B-spline: the nearest node and its two neighbours.
 struct QuadraticKernel {
   static constexpr int rows = 3;
   static constexpr double inverse_moment = 4.0;  ///< Σ w d² = 1/4
+  static constexpr bool spline_gradient = false;
+  static constexpr double gradient_scale = inverse_moment;
 
   /// The nearest node.
   template <class T>
@@ -87,12 +110,30 @@ struct QuadraticKernel {
     return {half * before * before, T(0.75) - t * t, half * behind * behind, T(0.0)};
   }
 
+  /// dw/dξ.
+  template <class T>
+  static std::array<T, 4> slopes(const T& t) {
+    return {t - T(0.5), T(-2.0) * t, t + T(0.5), T(0.0)};
+  }
+
   static Weights of_point(double t_x, double t_y) {
     const RowPair t(t_x, t_y);
     return {detail::polynomial(t, {0.125, 0.75, 0.125, 0.0}, {-0.5, 0.0, 0.5, 0.0},
                                {0.5, -1.0, 0.5, 0.0}, {0.0, 0.0, 0.0, 0.0}),
             detail::offsets(t)};
   }
+  static RowPair slopes_of_point(double t_x, double t_y) {
+    return detail::polynomial(RowPair(t_x, t_y), {-0.5, 0.0, 0.5, 0.0}, {1.0, -2.0, 1.0, 0.0},
+                              {0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0});
+  }
+};
+
+/// The same functions with velocity gradient and force by their own gradient instead of the first
+/// moment.
+template <class Kernel>
+struct SplineGradient : Kernel {
+  static constexpr bool spline_gradient = true;
+  static constexpr double gradient_scale = 1.0;
 };
 
 }  // namespace repose::mpm

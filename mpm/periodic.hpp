@@ -15,6 +15,7 @@ namespace repose::mpm {
 /// Kinetic energy of nodes before and after forces, ΔtΣ(f + mg)·u [J/m]; see ledger.hpp.
 struct NodeSums {
   double before = 0.0, after = 0.0, impulse_work = 0.0;
+  double extension_work = 0.0;  ///< ½ΔtΣ(f + mg)·(v_k − v), see extended_pic.hpp
 };
 
 /// Joins the nodes of the left edge with those of the right one (before any wall is applied).

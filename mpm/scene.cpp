@@ -14,6 +14,7 @@ constexpr double min_cells = 3;           ///< across the box
 constexpr double min_periodic_cells = 5;  ///< no node is its own image
 constexpr double max_frames = 1e6;
 constexpr double max_rows = 1e7;
+constexpr double max_order = 100;
 constexpr double tolerance = 1e-6;  ///< of a cell or a point spacing
 
 std::string number(double x, int digits = 10) {
@@ -77,6 +78,7 @@ void check_numbers(const Scene& scene) {
     throw InputError("grid.points_per_cell",
                      "points_per_cell = " + std::to_string(scene.points_per_cell) +
                          " must be a square number from 1 to 100: 1, 4, 9, 16, ...");
+  require(scene.order, {1.0, max_order, false, false}, "step.order", "order");
   require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
   require(scene.viscosity_tolerance, {0.0, 0.1, true, false}, "step.viscosity_tolerance",
           "viscosity_tolerance");
@@ -258,7 +260,23 @@ void check_overlap(const Scene& scene) {
     }
 }
 
-/// An implicit viscosity has something to solve for, among fields that its walls admit.
+/// What an extended velocity adds vanishes at walls at rest and knows no images across an edge.
+void check_extension(const Scene& scene) {
+  if (scene.transfer != Transfer::xpic && scene.transfer != Transfer::fmpm) return;
+  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
+                                  {scene.left, "domain.left"},
+                                  {scene.right, "domain.right"},
+                                  {scene.top, "domain.top"}})
+    if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
+      throw InputError(key,
+                       "a periodic edge or a wall that moves does not go with step.transfer = "
+                       "\"" +
+                           std::string(name_of(scene.transfer)) +
+                           "\" yet; any other transfer does");
+}
+
+/// An implicit viscosity has something to solve for, among fields that its walls admit, and its
+/// strain rates are those of the points: the affine gradient of the nodes' own velocity.
 void check_viscosity(const Scene& scene) {
   if (scene.viscosity == Viscosity::explicit_force) return;
   if (std::all_of(scene.bodies.begin(), scene.bodies.end(),
@@ -267,6 +285,13 @@ void check_viscosity(const Scene& scene) {
         "step.viscosity",
         "viscosity = \"implicit\" needs a body whose law is a viscosity: newtonian, or "
         "mu_i with form = \"regularised\"");
+  if (scene.transfer == Transfer::tpic || scene.transfer == Transfer::xpic ||
+      scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer",
+                     "transfer = \"" + std::string(name_of(scene.transfer)) +
+                         "\" does not go with step.viscosity = \"implicit\": the strain rates that "
+                         "it solves for are the affine gradients of \"relaxed\", \"apic\", "
+                         "\"aflip\", \"flip\" and \"pic\"");
   for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
                                   {scene.left, "domain.left"},
                                   {scene.right, "domain.right"},
@@ -357,6 +382,7 @@ void validate(const Scene& scene) {
   check_discs(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+  check_extension(scene);
   check_viscosity(scene);
 }
 

@@ -63,9 +63,13 @@ enum class Transfer {
   aflip,    ///< as flip, with the affine field of apic
   relaxed,  ///< points keep their own velocity and affine field, which relax towards the grid's at
             ///< a rate: the damping of apic per unit of time instead of per step
+  tpic,     ///< as apic, with the spline's gradient for affine field, strain and force
+  xpic,     ///< as flip, less what no grid velocity could be, filtered to the given order
+  fmpm,     ///< as pic, with the full mass matrix inverted to the given order
 };
 /// Their names in scene files, in the same order.
-constexpr std::array<std::string_view, 5> transfer_names{"pic", "flip", "apic", "aflip", "relaxed"};
+constexpr std::array<std::string_view, 8> transfer_names{"pic",     "flip", "apic", "aflip",
+                                                         "relaxed", "tpic", "xpic", "fmpm"};
 constexpr std::string_view name_of(Transfer transfer) {
   return transfer_names[static_cast<std::size_t>(transfer)];
 }
@@ -102,6 +106,8 @@ struct Scene {
   Transfer transfer = Transfer::relaxed;
   /// [s], for Transfer::relaxed; absent: default_relaxation_time()
   std::optional<double> relaxation_time;
+  /// m of Transfer::xpic, k of Transfer::fmpm; 1 is pic. A step costs order − 1 more transfers.
+  int order = 2;
   /// c: the pressure noise of the points decays as e^{−cγ} in shear γ [-]; 0: no averaging. Of the
   /// order of K/(ρ g H). See pressure_averaging.hpp.
   double pressure_averaging = 0.0;

@@ -27,6 +27,7 @@ class Simulation::Impl {
   void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
   void update_grid(double dt);      ///< sum tiles, accelerate nodes
   void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
+  void extend_velocity();           ///< XPIC, FMPM beyond first order (extended_pic.cpp)
   void grid_to_points(double dt);   ///< G2P, move, update stress, P2G of the next step
   void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
 
@@ -112,6 +113,9 @@ class Simulation::Impl {
   std::vector<BlockSums> block_sums_;
   std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
   WallEffect wall_effect_;
+  std::vector<MirroredTriple> mirrored_;  ///< what the walls did, for the extension
+  /// Of the extension: its remainder r, A r, and what it has added up.
+  NodeVector remainder_, through_points_, extension_;
   ImplicitViscosity viscosity_;
   ViscousEffect viscous_effect_;
 };

@@ -6,23 +6,28 @@
 #include "mpm/body_force.hpp"
 #include "mpm/pressure_averaging.hpp"
 #include "mpm/simulation_impl.hpp"
+#include "mpm/tile_exchange.hpp"
 #include "mpm/transfer.hpp"
 
 namespace repose::mpm {
 namespace {
 
-/// Calls f with the kernel's type and with a and b as constants, all chosen at run time.
+/// Calls f with the interpolation functions of a scene, and with whether points hand on an affine
+/// velocity and whether pressures are averaged as constants, all chosen at run time.
 template <class F>
-void choose(Kernel kernel, bool a, bool b, F&& f) {
+void choose(const Scene& scene, bool affine, bool averages, F&& f) {
   using Yes = std::true_type;
   using No = std::false_type;
-  const auto with = [&](auto k) {
-    if (a)
-      b ? f(k, Yes{}, Yes{}) : f(k, Yes{}, No{});
-    else
-      b ? f(k, No{}, Yes{}) : f(k, No{}, No{});
+  const auto with = [&](auto kernel, auto is_affine) {
+    averages ? f(kernel, is_affine, Yes{}) : f(kernel, is_affine, No{});
   };
-  kernel == Kernel::cubic ? with(CubicKernel{}) : with(QuadraticKernel{});
+  const auto with_either = [&](auto kernel) { affine ? with(kernel, Yes{}) : with(kernel, No{}); };
+  const bool cubic = scene.kernel == Kernel::cubic;
+  if (scene.transfer == Transfer::tpic)  // always affine
+    cubic ? with(SplineGradient<CubicKernel>{}, Yes{})
+          : with(SplineGradient<QuadraticKernel>{}, Yes{});
+  else
+    cubic ? with_either(CubicKernel{}) : with_either(QuadraticKernel{});
 }
 
 /// The larger of two; a NaN in `x` is kept, so that it cannot slip through a maximum.
@@ -64,8 +69,10 @@ void Simulation::Impl::step(double stop_at) {
   if (!tiles_are_current) points_to_grid();
   update_grid(dt);
   if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
-  wall_effect_ = apply_walls(grid, walls);
+  const bool extends = retention(dt).extended;
+  wall_effect_ = apply_walls(grid, walls, extends ? &mirrored_ : nullptr);
   solve_viscosity(dt);
+  if (extends) extend_velocity();
   tiles_time = time + dt >= stop_at - 1e-9 * dt ? stop_at : time + dt;
   grid_to_points(dt);
   last_dt = dt;
@@ -107,9 +114,13 @@ Retention Simulation::Impl::retention(double dt) const {
     case Transfer::flip:
       return {false, 1.0, 0.0};
     case Transfer::apic:
+    case Transfer::tpic:
       return {true, 0.0, 0.0};
     case Transfer::aflip:
       return {true, 1.0, 0.0};
+    case Transfer::xpic:
+    case Transfer::fmpm:
+      return {false, 0.0, 0.0, scene.order > 1};
     case Transfer::relaxed:
       break;
   }
@@ -158,10 +169,9 @@ void Simulation::Impl::prescribed_force_to_tile(const PointSet& points, const Ra
 void Simulation::Impl::points_to_grid() {
   tiles_time = time;
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    choose(scene.kernel, retention(0.0).affine, averages(),
-           [&]<class K>(K, auto affine, auto averages) {
-             transfer_to_tile<K, affine.value, averages.value>(k);
-           });
+    choose(scene, retention(0.0).affine, averages(), [&]<class K>(K, auto affine, auto averages) {
+      transfer_to_tile<K, affine.value, averages.value>(k);
+    });
   });
 }
 
@@ -169,22 +179,9 @@ void Simulation::Impl::update_grid(double dt) {
   node_sums_.resize(grid.node_blocks.size());
   for_each_block(arena, grid.node_blocks.size(), [&](std::size_t k) {
     NodeBlock& nb = grid.node_blocks[k];
-    // own every node: sum what the tiles around put on it, always in the same order
-    alignas(64) std::array<std::array<double, block_nodes>, tile_channels> sum{};
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::int32_t source = nb.point_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
-        if (source < 0) continue;
-        const Tile& tile = grid.tiles[static_cast<std::size_t>(source)];
-        for_each_shared_row(dx, dy, [&](std::size_t node, std::size_t entry, auto columns) {
-          for (std::size_t c = 0; c < channels(); ++c) {
-            const double* from = tile[c].data() + entry;
-            double* to = sum[c].data() + node;
-            for (std::size_t i = 0; i < columns; i += Row::size)
-              (Row::load_aligned(to + i) + Row::load_aligned(from + i)).store_aligned(to + i);
-          }
-        });
-      }
+    alignas(64) NodeTotals<tile_channels> sum{};
+    add_tiles<tile_channels>(grid, nb, {T_MASS, T_PX, T_PY, T_FX, T_FY, T_ELASTIC}, sum,
+                             channels());
     Pack before(0.0), after(0.0), impulse_work(0.0);
     const Pack zero(0.0), half(0.5), one(1.0), step(dt);
     for (std::size_t n = 0; n < block_nodes; n += Pack::size) {
@@ -212,7 +209,7 @@ void Simulation::Impl::update_grid(double dt) {
       after = after + half * m * (wx * wx + wy * wy);
       impulse_work = impulse_work + m * (kick_x * ux + kick_y * uy);
     }
-    node_sums_[k] = {xsimd::hadd(before), xsimd::hadd(after), xsimd::hadd(impulse_work)};
+    node_sums_[k] = {xsimd::hadd(before), xsimd::hadd(after), xsimd::hadd(impulse_work), 0.0};
   });
 }
 
@@ -221,10 +218,14 @@ void Simulation::Impl::grid_to_points(double dt) {
   const Retention keep = retention(dt);
   const auto advance = [&]<class Kernel>(Kernel, auto affine, auto averages, std::size_t k) {
     BlockSums& sums = block_sums_[k];
-    if (keep.gradient > 0.0)
+    if constexpr (Kernel::spline_gradient)  // of tpic, which keeps nothing
+      advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
+    else if (keep.gradient > 0.0)
       advance_block<Kernel, Keeps::velocity_and_gradient, averages.value>(k, dt, keep, sums);
     else if (keep.velocity > 0.0)
       advance_block<Kernel, Keeps::velocity, averages.value>(k, dt, keep, sums);
+    else if (keep.extended && scene.transfer == Transfer::xpic)
+      advance_block<Kernel, Keeps::extension, averages.value>(k, dt, keep, sums);
     else
       advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
     // While the points of the block are in the cache: their way to the grid of the next step. If
@@ -233,7 +234,7 @@ void Simulation::Impl::grid_to_points(double dt) {
     if (sums.transferred) transfer_to_tile<Kernel, affine.value, averages.value>(k);
   };
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    choose(scene.kernel, keep.affine, averages(),
+    choose(scene, keep.affine, averages(),
            [&](auto kernel, auto affine, auto averages) { advance(kernel, affine, averages, k); });
   });
   tiles_are_current = std::all_of(block_sums_.begin(), block_sums_.end(),
@@ -247,19 +248,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, const Retenti
   VelocityTile tile;
   const auto fill = [&](std::array<double, tile_nodes> VelocityTile::*field,
                         auto NodeBlock::*from) {
-    (tile.*field).fill(0.0);
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::int32_t source = pb.node_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
-        if (source < 0) continue;
-        const NodeBlock& nb = grid.node_blocks[static_cast<std::size_t>(source)];
-        // seen from the node block, this tile's block lies at (−dx, −dy)
-        for_each_shared_row(-dx, -dy, [&](std::size_t node, std::size_t entry, auto columns) {
-          for (std::size_t i = 0; i < columns; i += Row::size)
-            Row::load_aligned((nb.*from).data() + node + i)
-                .store_aligned((tile.*field).data() + entry + i);
-        });
-      }
+    fill_tile(pb, tile.*field, [&](std::size_t k) { return (grid.node_blocks[k].*from).data(); });
   };
   fill(&VelocityTile::vx, &NodeBlock::vx);
   fill(&VelocityTile::vy, &NodeBlock::vy);
@@ -480,6 +469,7 @@ void Simulation::Impl::close_ledger() {
     nodes.before += part.before;
     nodes.after += part.after;
     nodes.impulse_work += part.impulse_work;
+    nodes.extension_work += part.extension_work;
   }
   // at the whole step, with half a kick on both sides (ledger.hpp)
   const double points_to_nodes =
@@ -487,8 +477,11 @@ void Simulation::Impl::close_ledger() {
   const double nodes_to_points =
       nodes.after + wall_effect_.kinetic_after + viscous_effect_.kinetic - kinetic;
   const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
-  const double kept = retention(last_dt).velocity;  // what points keep, no mirror takes
-  ledger.transfer_loss += points_to_nodes + nodes_to_points - kept * mirrored;
+  const Retention keep = retention(last_dt);
+  // what points keep, no mirror takes; nor, beyond first order, what an extension gives back
+  const double kept = keep.extended ? 1.0 : keep.velocity;
+  ledger.transfer_loss +=
+      points_to_nodes + nodes_to_points + nodes.extension_work - kept * mirrored;
   ledger.wall_loss -= (1.0 - kept) * mirrored;
   ledger.wall_loss -= wall_effect_.drag_after - wall_effect_.drag_before;
   ledger.kinetic = kinetic;

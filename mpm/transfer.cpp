@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "mpm/pack_stencil.hpp"
+
 namespace repose::mpm {
 namespace {
 
@@ -20,7 +22,8 @@ REPOSE_INLINE inline void unrolled(F&& f) {
 }
 
 /// What a point adds to a node at the distance d = (dx, dy) h is w times a polynomial in d:
-///   mass c_m,   momentum c_p + c_px dx + c_py dy,   force c_fx dx + c_fy dy.
+///   mass c_m,   momentum c_p + c_px dx + c_py dy,   force c_fx dx + c_fy dy,
+/// but for the force by the spline's gradient, c_fx ∂w/∂ξ + c_fy ∂w/∂η.
 /// The coefficients of a pack of points.
 enum Coefficient : std::size_t {
   C_M,
@@ -48,7 +51,8 @@ class Accumulator {
   }
 
   template <bool affine>
-  REPOSE_INLINE void add(const Weights& at, const double (*c)[Pack::size], std::size_t lane) {
+  REPOSE_INLINE void add(double t_x, double t_y, const double (*c)[Pack::size], std::size_t lane) {
+    const Weights at = Kernel::of_point(t_x, t_y);
     const Pack w_row = at.w.x_repeated();
     const Pack dx = at.d.x_repeated();
     const auto of = [&](std::size_t k) { return Pack(c[k][lane]); };
@@ -67,10 +71,14 @@ class Accumulator {
       add(std::integral_constant<std::size_t, T_MASS>{}, of(C_M));
       add(std::integral_constant<std::size_t, T_PX>{}, affine ? xsimd::fma(of(C_XY), dy, px) : px);
       add(std::integral_constant<std::size_t, T_PY>{}, affine ? xsimd::fma(of(C_YY), dy, py) : py);
-      add(std::integral_constant<std::size_t, T_FX>{}, xsimd::fma(of(C_FXY), dy, fx));
-      add(std::integral_constant<std::size_t, T_FY>{}, xsimd::fma(of(C_FYY), dy, fy));
+      if constexpr (!Kernel::spline_gradient) {
+        add(std::integral_constant<std::size_t, T_FX>{}, xsimd::fma(of(C_FXY), dy, fx));
+        add(std::integral_constant<std::size_t, T_FY>{}, xsimd::fma(of(C_FYY), dy, fy));
+      }
       if constexpr (averages) add(std::integral_constant<std::size_t, T_ELASTIC>{}, of(C_E));
     });
+    if constexpr (Kernel::spline_gradient)
+      add_force_by_slopes(at.w, Kernel::slopes_of_point(t_x, t_y), c, lane);
   }
 
   REPOSE_INLINE void add_to(Tile& tile, std::size_t node) const {
@@ -85,6 +93,27 @@ class Accumulator {
   }
 
  private:
+  /// c_fx w′(ξ) w(η) + c_fy w(ξ) w′(η).
+  REPOSE_INLINE void add_force_by_slopes(const RowPair& w, const RowPair& slope,
+                                         const double (*c)[Pack::size], std::size_t lane) {
+    const auto of = [&](std::size_t k) { return Pack(c[k][lane]); };
+    const Pack w_x = w.x_repeated();
+    const Pack slope_x = slope.x_repeated();
+    const Pack fx_x = of(C_FXX) * slope_x;
+    const Pack fx_y = of(C_FXY) * w_x;
+    const Pack fy_x = of(C_FXY) * slope_x;
+    const Pack fy_y = of(C_FYY) * w_x;
+    unrolled<packs_per_stencil>([&](auto k) REPOSE_INLINE {
+      constexpr int row = static_cast<int>(k * rows_per_pack);
+      const Pack w_y = w.template y_spread<row>();
+      const Pack slope_y = slope.template y_spread<row>();
+      Pack& fx = sum_[T_FX * packs_per_stencil + k];
+      Pack& fy = sum_[T_FY * packs_per_stencil + k];
+      fx = xsimd::fma(w_y, fx_x, xsimd::fma(slope_y, fx_y, fx));
+      fy = xsimd::fma(w_y, fy_x, xsimd::fma(slope_y, fy_y, fy));
+    });
+  }
+
   static constexpr std::size_t channels = averages ? tile_channels : T_ELASTIC;
   Pack sum_[channels * packs_per_stencil];
 };
@@ -96,7 +125,7 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
                     const double* elastic, Tile& tile) {
   const double inv_h = 1.0 / h;
   // −V D⁻¹ h and the affine velocity times h: distances are in units of h
-  const Pack minus_D_h(-Kernel::inverse_moment * inv_h);
+  const Pack minus_D_h(-Kernel::gradient_scale * inv_h);
   const Pack cell(h);
   // the anchor of a point whose stencil begins with the tile's first node
   const Pack x_1(origin[0] + 1.0);
@@ -144,94 +173,17 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
         stencil.clear();
         current = first_node;
       }
-      stencil.template add<affine>(Kernel::of_point(tx[lane], ty[lane]), c, lane);
+      stencil.template add<affine>(tx[lane], ty[lane], c, lane);
     }
   }
   if (current != nowhere) stencil.add_to(tile, current);
 }
 
-namespace {
-
-/// A field at the points of a pack: Σ w f, and Σ w f d with the distance d in units of h.
-struct Moments {
-  Pack value = Pack(0.0), dx = Pack(0.0), dy = Pack(0.0);
-};
-
-/// The stencils of a pack of points in a tile.
-template <class Kernel>
-class PackStencil {
- public:
-  /// Positions in units of h from the tile's first node.
-  PackStencil(const Pack& x, const Pack& y) : y_(y) {
-    const Pack anchor_x = Kernel::anchor(x);
-    const Pack anchor_y = Kernel::anchor(y);
-    wx_ = Kernel::weights(Pack(x - anchor_x));
-    wy_ = Kernel::weights(Pack(y - anchor_y));
-    base_y_ = anchor_y - Pack(1.0);
-    for (std::size_t k = 0; k < columns; ++k) {
-      const Pack column = anchor_x + Pack(static_cast<double>(k) - 1.0);
-      column_[k] = RowTable::index(column);
-      wx_dx_[k] = wx_[k] * (column - x);
-    }
-    first_row_ = static_cast<std::size_t>(least(base_y_));
-    last_row_ = static_cast<std::size_t>(greatest(base_y_)) + Kernel::rows - 1;
-  }
-
-  /// Calls f(row of the tile, its weight, its distance): rows in which no lane has a node are left
-  /// out, lanes that have none in this row get the weight 0.
-  template <class F>
-  void for_each_row(F&& f) const {
-    for (std::size_t row = first_row_; row <= last_row_; ++row) {
-      const Pack r(static_cast<double>(row));
-      const Pack k = r - base_y_;
-      Pack w(0.0);
-      for (std::size_t j = 0; j < Kernel::rows; ++j)
-        w = select(k == Pack(static_cast<double>(j)), wy_[j], w);
-      f(row, w, Pack(r - y_));
-    }
-  }
-
-  /// Adds a row of a field to its moments; w_d = weight × distance.
-  void add(const double* row, const Pack& w, const Pack& w_d, Moments& sum) const {
-    const RowTable table(row);
-    Pack s = table.at(column_[0]);
-    Pack s_dx = s * wx_dx_[0];
-    s = s * wx_[0];
-    for (std::size_t k = 1; k < columns; ++k) {
-      const Pack f = table.at(column_[k]);
-      s = xsimd::fma(wx_[k], f, s);
-      s_dx = xsimd::fma(wx_dx_[k], f, s_dx);
-    }
-    sum.value = xsimd::fma(w, s, sum.value);
-    sum.dx = xsimd::fma(w, s_dx, sum.dx);
-    sum.dy = xsimd::fma(w_d, s, sum.dy);
-  }
-
-  /// Its value alone.
-  void add(const double* row, const Pack& w, Pack& sum) const {
-    const RowTable table(row);
-    Pack s = table.at(column_[0]) * wx_[0];
-    for (std::size_t k = 1; k < columns; ++k) s = xsimd::fma(wx_[k], table.at(column_[k]), s);
-    sum = xsimd::fma(w, s, sum);
-  }
-
- private:
-  static constexpr std::size_t columns = Kernel::rows;
-  Pack y_;
-  std::array<Pack, 4> wx_, wy_;
-  Pack wx_dx_[columns];
-  RowTable::Index column_[columns];
-  Pack base_y_;
-  std::size_t first_row_, last_row_;
-};
-
-}  // namespace
-
 template <class Kernel, Keeps keeps, bool averages>
 void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
                     const Range& range, const Retention& keep, PointSet& points, Motion motion) {
   const Pack inv_h(1.0 / h);
-  const Pack inv_D_h(Kernel::inverse_moment / h);
+  const Pack inv_D_h(Kernel::gradient_scale / h);
   const Pack x_0(static_cast<double>(origin[0]));
   const Pack y_0(static_cast<double>(origin[1]));
   const Pack keep_v(keep.velocity);
@@ -244,13 +196,12 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     const PackStencil<Kernel> stencil(at(X) * inv_h - x_0, at(Y) * inv_h - y_0);
     Moments vx, vy, ux, uy;
     Pack elastic(0.0);
-    stencil.for_each_row([&](std::size_t row, const Pack& w, const Pack& d) {
+    stencil.for_each_row([&](std::size_t row, const Pack& w, const Pack& w_d) {
       const std::size_t n = row * tile_stride;
-      const Pack w_d = w * d;
       stencil.add(tile.vx.data() + n, w, w_d, vx);
       stencil.add(tile.vy.data() + n, w, w_d, vy);
       if constexpr (averages) stencil.add(tile.elastic.data() + n, w, elastic);
-      if constexpr (keeps == Keeps::velocity) {
+      if constexpr (keeps == Keeps::velocity || keeps == Keeps::extension) {
         stencil.add(tile.ux.data() + n, w, ux.value);
         stencil.add(tile.uy.data() + n, w, uy.value);
       } else if constexpr (keeps == Keeps::velocity_and_gradient) {
@@ -265,6 +216,9 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     if constexpr (keeps == Keeps::nothing) {
       put(VX, vx.value);
       put(VY, vy.value);
+    } else if constexpr (keeps == Keeps::extension) {
+      put(VX, vx.value + ux.value);
+      put(VY, vy.value + uy.value);
     } else {
       put(VX, vx.value + keep_v * (at(VX) - ux.value));
       put(VY, vy.value + keep_v * (at(VY) - uy.value));
@@ -277,24 +231,28 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
   }
 }
 
-#define REPOSE_TRANSFERS(KERNEL, AVERAGES)                                                         \
-  template void points_to_tile<KERNEL, true, AVERAGES>(const PointSet&, const Range&, double,      \
-                                                       std::array<int, 2>, const double*, Tile&);  \
-  template void points_to_tile<KERNEL, false, AVERAGES>(const PointSet&, const Range&, double,     \
-                                                        std::array<int, 2>, const double*, Tile&); \
-  template void tile_to_points<KERNEL, Keeps::nothing, AVERAGES>(                                  \
-      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&,  \
-      Motion);                                                                                     \
-  template void tile_to_points<KERNEL, Keeps::velocity, AVERAGES>(                                 \
-      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&,  \
-      Motion);                                                                                     \
-  template void tile_to_points<KERNEL, Keeps::velocity_and_gradient, AVERAGES>(                    \
-      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&,  \
+#define REPOSE_FROM_TILE(KERNEL, KEEPS, AVERAGES)                                                 \
+  template void tile_to_points<KERNEL, Keeps::KEEPS, AVERAGES>(                                   \
+      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&, \
       Motion);
+#define REPOSE_TO_TILE(KERNEL, AFFINE, AVERAGES)          \
+  template void points_to_tile<KERNEL, AFFINE, AVERAGES>( \
+      const PointSet&, const Range&, double, std::array<int, 2>, const double*, Tile&);
+#define REPOSE_TRANSFERS(KERNEL, AVERAGES)                  \
+  REPOSE_TO_TILE(KERNEL, true, AVERAGES)                    \
+  REPOSE_TO_TILE(KERNEL, false, AVERAGES)                   \
+  REPOSE_FROM_TILE(KERNEL, nothing, AVERAGES)               \
+  REPOSE_FROM_TILE(KERNEL, velocity, AVERAGES)              \
+  REPOSE_FROM_TILE(KERNEL, velocity_and_gradient, AVERAGES) \
+  REPOSE_FROM_TILE(KERNEL, extension, AVERAGES)             \
+  REPOSE_TO_TILE(SplineGradient<KERNEL>, true, AVERAGES)    \
+  REPOSE_FROM_TILE(SplineGradient<KERNEL>, nothing, AVERAGES)
 REPOSE_TRANSFERS(CubicKernel, true)
 REPOSE_TRANSFERS(CubicKernel, false)
 REPOSE_TRANSFERS(QuadraticKernel, true)
 REPOSE_TRANSFERS(QuadraticKernel, false)
 #undef REPOSE_TRANSFERS
+#undef REPOSE_TO_TILE
+#undef REPOSE_FROM_TILE
 
 }  // namespace repose::mpm

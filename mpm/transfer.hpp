@@ -5,7 +5,9 @@
 /// 2018):
 ///   m_i = Σ w m_p,   p_i = Σ w m_p (v_p + A_p (x_i − x_p)),
 ///   f_i = −Σ w V_p D⁻¹ σ_p (x_i − x_p),                      D = h²/4 (quadratic), h²/3 (cubic)
-///   v_p = Σ w v_i,   L_p = Σ w v_i (x_i − x_p)ᵀ D⁻¹.
+///   v_p = Σ w v_i,   L_p = Σ w v_i (x_i − x_p)ᵀ D⁻¹;
+/// with a kernel that is a SplineGradient, f_i = −Σ V_p σ_p ∇w and L_p = Σ v_i (∇w)ᵀ instead (TPIC,
+/// Nakamura, Matsumura & Mizutani 2023).
 /// Where pressures are averaged (pressure_averaging.hpp), also
 ///   e_i = Σ w m_p e_p/m_i,   ē_p = Σ w e_i.
 ///
@@ -25,10 +27,12 @@ struct Retention {
   bool affine = true;     ///< the affine velocity goes to the grid
   double velocity = 0.0;  ///< keep, of the velocity
   double gradient = 0.0;  ///< keep, of the affine velocity
+  bool extended = false;  ///< the points' velocity is extended (extended_pic.hpp)
 };
 
-/// Which of the two a point keeps at all: without, u need not be interpolated.
-enum class Keeps : std::uint8_t { nothing, velocity, velocity_and_gradient };
+/// Which of the two a point keeps at all: without, u need not be interpolated. With `extension`, u
+/// stands for what an extended velocity adds (extended_pic.hpp): v_p ← Σ w v_i + Σ w u_i.
+enum class Keeps : std::uint8_t { nothing, velocity, velocity_and_gradient, extension };
 
 /// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.

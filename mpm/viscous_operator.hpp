@@ -14,13 +14,6 @@
 
 namespace repose::mpm {
 
-/// A vector at every node of a block.
-struct NodeField {
-  std::array<double, block_nodes> x{}, y{};
-};
-/// One per node block of the grid, in its order.
-using NodeVector = std::vector<NodeField>;
-
 /// The velocity fields that slip and no-slip walls admit (walls.hpp): v = E y, where y are the
 /// values at the nodes that are free, and E gives ghosts their mirrored values and zero to what is
 /// held.

@@ -17,6 +17,7 @@ struct WallNode {
   NodeBlock* block = nullptr;  // null: the node does not exist (nothing near)
   std::size_t place = 0;
   bool normal_is_x = true;
+  std::int32_t index = -1;  // of the block
 
   double m() const { return block ? block->mirrored_mass[place] : 0.0; }
   Pair before_forces() const {
@@ -54,7 +55,8 @@ struct WallNode {
 
 WallNode wall_node(Grid& grid, int i, int j, bool normal_is_x) {
   const Grid::NodeRef at = grid.node(i, j);
-  return {at.block, at.place, normal_is_x};
+  const auto index = at.block ? at.block - grid.node_blocks.data() : -1;
+  return {at.block, at.place, normal_is_x, static_cast<std::int32_t>(index)};
 }
 
 /// The velocities of a triple, and what mirroring makes of them.
@@ -92,7 +94,7 @@ double coulomb_share(const Triple& v, double m_a, double m_b, double m_c, double
 
 /// `inward` is +1 where the inside lies on the positive side of the wall, else −1.
 WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, const WallNode& b,
-                           const WallNode& c) {
+                           const WallNode& c, std::vector<MirroredTriple>* record) {
   const double m_a = a.m();
   const double m_b = b.m();
   const double m_c = c.m();
@@ -104,6 +106,12 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
   if (wall.kind == Wall::Kind::friction) {
     stick = coulomb_share(v, m_a, m_b, m_c, wall.friction, inward);
     if (stick < 0.0) return {};
+  }
+  if (record != nullptr) {
+    const auto place = [](const WallNode& n) {
+      return MirroredTriple::Node{n.index, static_cast<std::int32_t>(n.place)};
+    };
+    record->push_back({{place(a), place(b), place(c)}, a.normal_is_x, m_a, m_c, stick});
   }
   const Triple u_new = u.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
   const Triple v_new = v.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
@@ -122,7 +130,8 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
 }
 
 /// A wall along a line of nodes: x = const (normal_is_x) or y = const at node index `line`.
-WallEffect apply_wall(Grid& grid, const Wall& wall, bool normal_is_x, int line, int inward) {
+WallEffect apply_wall(Grid& grid, const Wall& wall, bool normal_is_x, int line, int inward,
+                      std::vector<MirroredTriple>* record) {
   WallEffect total;
   if (wall.kind == Wall::Kind::open || wall.kind == Wall::Kind::periodic) return total;
   const int block = normal_is_x ? grid.block_of_cell_x(line) : grid.block_of_cell_y(line);
@@ -135,7 +144,7 @@ WallEffect apply_wall(Grid& grid, const Wall& wall, bool normal_is_x, int line, 
         return normal_is_x ? wall_node(grid, line + offset, along, true)
                            : wall_node(grid, along, line + offset, false);
       };
-      const WallEffect here = apply_to_triple(wall, inward, at(-inward), at(0), at(inward));
+      const WallEffect here = apply_to_triple(wall, inward, at(-inward), at(0), at(inward), record);
       total += here;
     }
   }
@@ -144,15 +153,39 @@ WallEffect apply_wall(Grid& grid, const Wall& wall, bool normal_is_x, int line, 
 
 }  // namespace
 
-WallEffect apply_walls(Grid& grid, const Walls& walls) {
+WallEffect apply_walls(Grid& grid, const Walls& walls, std::vector<MirroredTriple>* record) {
+  if (record != nullptr) record->clear();
   // x first; its mirrored masses make the fields exactly odd or even in x, which a following mirror
   // in y keeps, so that both conditions hold in the corners
   WallEffect total;
-  total += apply_wall(grid, walls.left, true, 0, 1);
-  total += apply_wall(grid, walls.right, true, grid.nx(), -1);
-  total += apply_wall(grid, walls.floor, false, 0, 1);
-  total += apply_wall(grid, walls.top, false, grid.ny(), -1);
+  total += apply_wall(grid, walls.left, true, 0, 1, record);
+  total += apply_wall(grid, walls.right, true, grid.nx(), -1, record);
+  total += apply_wall(grid, walls.floor, false, 0, 1, record);
+  total += apply_wall(grid, walls.top, false, grid.ny(), -1, record);
   return total;
+}
+
+void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity) {
+  for (const MirroredTriple& at : record) {
+    const auto component = [&](std::size_t k, bool x) -> double* {
+      if (at.node[k].block < 0) return nullptr;
+      NodeField& nodes = velocity[static_cast<std::size_t>(at.node[k].block)];
+      return &(x ? nodes.x : nodes.y)[static_cast<std::size_t>(at.node[k].place)];
+    };
+    const auto read = [&](std::size_t k) {
+      const double* n = component(k, at.normal_is_x);
+      return n != nullptr ? Pair{*n, *component(k, !at.normal_is_x)} : Pair{};
+    };
+    const Triple mirrored = Triple{read(0), read(1), read(2)}.mirrored(at.m_a, at.m_c, at.stick);
+    const auto write = [&](std::size_t k, const Pair& v) {
+      if (at.node[k].block < 0) return;
+      *component(k, at.normal_is_x) = v.n;
+      *component(k, !at.normal_is_x) = v.t;
+    };
+    write(0, mirrored.a);
+    write(1, mirrored.b);
+    write(2, mirrored.c);
+  }
 }
 
 }  // namespace repose::mpm

@@ -42,7 +42,25 @@ struct WallEffect {
   }
 };
 
-/// Applies the walls to the node velocities before and after forces.
-WallEffect apply_walls(Grid& grid, const Walls& walls);
+/// Three nodes behind, on and inside a wall, and the mixture that mirrored them.
+struct MirroredTriple {
+  struct Node {
+    std::int32_t block = -1;  ///< index into Grid::node_blocks; −1 where there is no node
+    std::int32_t place = 0;
+  };
+  std::array<Node, 3> node;
+  bool normal_is_x = true;
+  double m_a = 0.0, m_c = 0.0;  ///< masses behind and inside, as they weigh here [kg/m]
+  double stick = 0.0;           ///< 0: tangential even, 1: odd
+};
+
+/// Applies the walls to the node velocities before and after forces. `record`, if given, is filled
+/// with what they did, in its order.
+WallEffect apply_walls(Grid& grid, const Walls& walls,
+                       std::vector<MirroredTriple>* record = nullptr);
+
+/// Does to another velocity, momentum of the points over mass of the nodes, what the walls did to
+/// those of the grid: the images behind the walls take part in it, with the same share of sticking.
+void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity);
 
 }  // namespace repose::mpm

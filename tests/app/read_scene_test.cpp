@@ -268,7 +268,18 @@ TEST(ReadSceneErrors, relaxation_time_belongs_to_relaxed) {
             "s.toml:20:1: only step.transfer = \"relaxed\" has a relaxation time");
   EXPECT_EQ(problems(granular + "[step]\ntransfer = \"relaxd\"\n"),
             "s.toml:19:1: step.transfer must be one of \"pic\", \"flip\", \"apic\", \"aflip\", "
-            "\"relaxed\"; got the string \"relaxd\"; did you mean \"relaxed\"?");
+            "\"relaxed\", \"tpic\", \"xpic\", \"fmpm\"; got the string \"relaxd\"; did you mean "
+            "\"relaxed\"?");
+}
+
+TEST(ReadSceneErrors, order_belongs_to_xpic_and_fmpm) {
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"xpic\"\norder = 5\n"), "");
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"fmpm\"\n"), "");
+  EXPECT_EQ(problems(granular + "[step]\norder = 2\n"),
+            "s.toml:19:1: only step.transfer = \"xpic\" and \"fmpm\" have an order");
+  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"xpic\"\norder = 0\n"),
+            "s.toml:20:1: step.order must be an integer from 1 to 100 (1 is pic); got "
+            "the integer 0");
 }
 
 TEST(ReadSceneErrors, implicit_viscosity_needs_a_viscosity_and_walls_it_can_hold) {
@@ -284,6 +295,11 @@ TEST(ReadSceneErrors, implicit_viscosity_needs_a_viscosity_and_walls_it_can_hold
       problems(replaced(fluid, "0.5625]\n", "0.5625]\nfloor = { friction = 0.4 }\n") + implicit),
       "s.toml:5:1: a wall with friction does not go with step.viscosity = \"implicit\": its "
       "limit on the shear is not part of the solve; \"no_slip\", \"slip\" and \"open\" do");
+  EXPECT_EQ(
+      problems(fluid + implicit + "transfer = \"tpic\"\n"),
+      "s.toml:21:1: transfer = \"tpic\" does not go with step.viscosity = \"implicit\": the strain "
+      "rates that it solves for are the affine gradients of \"relaxed\", \"apic\", \"aflip\", "
+      "\"flip\" and \"pic\"");
   EXPECT_EQ(problems(fluid + "[step]\nviscosity = \"implicite\"\n"),
             "s.toml:20:1: step.viscosity must be one of \"explicit\", \"implicit\"; got the string "
             "\"implicite\"; did you mean \"implicit\"?");

@@ -111,8 +111,8 @@ TEST(PeriodicTest, AnyNumberOfWidthsAtOnce) {
   run_steps(simulation, 2);
   const auto points = points_of(simulation);
   EXPECT_EQ(points.size(), 64u);
-  // round-off of the pressure, 16 eps K, on h: Δt 16 eps K/(ρh) = 4e-13 m/s, and at a Courant number
-  // of 22 the second step multiplies it by 22² = 500
+  // round-off of the pressure, 16 eps K, on h: Δt 16 eps K/(ρh) = 4e-13 m/s, and at a Courant
+  // number of 22 the second step multiplies it by 22² = 500
   for (const PointState& p : points) EXPECT_NEAR(p[VX], 10.0, 500 * 4e-13);
 }
 

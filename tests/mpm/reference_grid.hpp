@@ -46,17 +46,20 @@ struct Node {
 
 class Grid {
  public:
-  Grid(double h, Kernel kernel) : h_(h), kernel_(kernel) {}
+  /// With `spline_gradient`, forces and velocity gradients are by ∇w instead of w D⁻¹ d.
+  Grid(double h, Kernel kernel, bool spline_gradient = false)
+      : h_(h),
+        kernel_(kernel),
+        spline_gradient_(spline_gradient) {}
 
   /// m_i += w m, p_i += w m (v + L d), f_i += w (m b − V D⁻¹ σ d),  d = x_i − x
   void scatter(const Particle& p) {
-    for_each_weight(p.x, [&](Node& node, double w, const Vector& d) {
+    for_each_weight(p.x, [&](Node& node, double w, const Vector& d, const Vector& g) {
       node.m += w * p.mass;
       for (std::size_t i = 0; i < 2; ++i) {
         node.momentum[i] += w * p.mass * (p.v[i] + p.L[i][0] * d[0] + p.L[i][1] * d[1]);
-        node.force[i] +=
-            w * (p.mass * p.body_force[i] -
-                 p.volume / moment() * (p.stress[i][0] * d[0] + p.stress[i][1] * d[1]));
+        node.force[i] += w * p.mass * p.body_force[i] -
+                         p.volume * (p.stress[i][0] * g[0] + p.stress[i][1] * g[1]);
       }
     });
   }
@@ -74,10 +77,10 @@ class Grid {
   void gather(const Vector& x, Vector& v, Matrix& L, Vector Node::*field = &Node::velocity) {
     v = {};
     L = {};
-    for_each_weight(x, [&](const Node& node, double w, const Vector& d) {
+    for_each_weight(x, [&](const Node& node, double w, const Vector&, const Vector& g) {
       for (std::size_t i = 0; i < 2; ++i) {
         v[i] += w * (node.*field)[i];
-        for (std::size_t j = 0; j < 2; ++j) L[i][j] += w * (node.*field)[i] * d[j] / moment();
+        for (std::size_t j = 0; j < 2; ++j) L[i][j] += (node.*field)[i] * g[j];
       }
     });
   }
@@ -87,6 +90,17 @@ class Grid {
   std::map<std::pair<int, int>, Node> nodes;
 
  private:
+  /// dw/dx times h of a point at −d h from its node.
+  double slope(double d) const {
+    const double r = std::abs(d);
+    double dw_dr = 0.0;
+    if (kernel_ == Kernel::cubic)
+      dw_dr = r < 1.0 ? (1.5 * r - 2.0) * r : r < 2.0 ? -0.5 * (2.0 - r) * (2.0 - r) : 0.0;
+    else
+      dw_dr = r < 0.5 ? -2.0 * r : r < 1.5 ? r - 1.5 : 0.0;
+    return d > 0.0 ? -dw_dr : dw_dr;
+  }
+
   double weight(double d) const {
     const double r = std::abs(d);
     if (kernel_ == Kernel::cubic) {
@@ -103,13 +117,20 @@ class Grid {
     const int j0 = static_cast<int>(std::floor(x[1] / h_));
     for (int j = j0 - 1; j <= j0 + 2; ++j)
       for (int i = i0 - 1; i <= i0 + 2; ++i) {
-        const double w = weight(i - x[0] / h_) * weight(j - x[1] / h_);
-        if (w > 0.0) f(nodes[{i, j}], w, Vector{i * h_ - x[0], j * h_ - x[1]});
+        const double wx = weight(i - x[0] / h_);
+        const double wy = weight(j - x[1] / h_);
+        const double w = wx * wy;
+        if (!(w > 0.0)) continue;
+        const Vector d{i * h_ - x[0], j * h_ - x[1]};
+        const Vector by_moment{w * d[0] / moment(), w * d[1] / moment()};
+        const Vector by_spline{slope(i - x[0] / h_) * wy / h_, wx * slope(j - x[1] / h_) / h_};
+        f(nodes[{i, j}], w, d, spline_gradient_ ? by_spline : by_moment);
       }
   }
 
   double h_;
   Kernel kernel_;
+  bool spline_gradient_;
 };
 
 }  // namespace repose::mpm::reference

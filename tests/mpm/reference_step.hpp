@@ -27,17 +27,19 @@ class Model {
   const std::vector<PointState>& points() const { return points_; }
 
   void step(double dt) {
-    Grid grid(scene_.h, scene_.kernel);
+    Grid grid = empty_grid();
     for (const PointState& point : points_) scatter_with_images(grid, point);
     grid.advance(dt);
-    for (PointState& point : points_) {
+    const std::vector<Vector> extension = extended_by(grid);
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      PointState& point = points_[k];
       Vector u, v;
       Matrix G, L;
       grid.gather({point[X], point[Y]}, u, G, &Node::before);
       grid.gather({point[X], point[Y]}, v, L);
       const auto [keep_v, keep_A] = kept(dt);
       for (std::size_t i = 0; i < 2; ++i) {
-        point.field[VX + i] = v[i] + keep_v * (point[VX + i] - u[i]);
+        point.field[VX + i] = v[i] + keep_v * (point[VX + i] - u[i]) + extension[k][i];
         point.field[X + i] += dt * v[i];
         for (std::size_t j = 0; j < 2; ++j) {
           point.field[LXX + 2 * i + j] = L[i][j];
@@ -50,12 +52,77 @@ class Model {
   }
 
  private:
+  Grid empty_grid() const {
+    return Grid(scene_.h, scene_.kernel, scene_.transfer == Transfer::tpic);
+  }
+
+  /// What XPIC(m) adds to the points' velocities S v: V − (I − P)^m V − P V with P V = S S⁺V, said
+  /// of the points (Hammerquist & Nairn 2017). FMPM(k) changes the velocity of the grid itself,
+  ///   Σ_r (−1)^{r+1} C(k, r) (S⁺S)^{r−1} v   (Nairn & Hammerquist 2021).
+  /// (The solver sums powers of I − S⁺S on the grid for both.)
+  std::vector<Vector> extended_by(Grid& grid) const {
+    std::vector<Vector> added(points_.size());
+    if (scene_.transfer == Transfer::xpic) {
+      std::vector<Vector> rest(points_.size());
+      for (std::size_t k = 0; k < points_.size(); ++k) rest[k] = {points_[k][VX], points_[k][VY]};
+      const std::vector<Vector> velocity = rest;
+      const std::vector<Vector> pic = there_and_back(velocity);
+      for (int pass = 0; pass < scene_.order; ++pass) {
+        const std::vector<Vector> filtered = there_and_back(rest);
+        for (std::size_t k = 0; k < rest.size(); ++k)
+          for (std::size_t i = 0; i < 2; ++i) rest[k][i] -= filtered[k][i];
+      }
+      for (std::size_t k = 0; k < rest.size(); ++k)
+        for (std::size_t i = 0; i < 2; ++i) added[k][i] = velocity[k][i] - rest[k][i] - pic[k][i];
+    } else if (scene_.transfer == Transfer::fmpm) {
+      Grid power = grid;  // (S⁺S)^{r−1} v
+      double factor = 1.0;
+      for (auto& [place, node] : grid.nodes) node.velocity = {};
+      for (int r = 1; r <= scene_.order; ++r) {
+        if (r > 1) power = to_grid(at_points(power));
+        factor *= (r > 1 ? -1.0 : 1.0) * (scene_.order - r + 1.0) / r;
+        for (auto& [place, node] : grid.nodes)
+          for (std::size_t i = 0; i < 2; ++i)
+            node.velocity[i] += factor * power.nodes[place].velocity[i];
+      }
+    }
+    return added;
+  }
+
+  std::vector<Vector> at_points(Grid& grid) const {
+    std::vector<Vector> velocity(points_.size());
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      Matrix unused;
+      grid.gather({points_[k][X], points_[k][Y]}, velocity[k], unused);
+    }
+    return velocity;
+  }
+  Grid to_grid(const std::vector<Vector>& velocity) const {
+    Grid grid = empty_grid();
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      Particle p;
+      p.x = {points_[k][X], points_[k][Y]};
+      p.v = velocity[k];
+      p.mass = points_[k][MASS];
+      scatter_with_images(grid, p);
+    }
+    grid.advance(0.0);
+    return grid;
+  }
+  std::vector<Vector> there_and_back(const std::vector<Vector>& velocity) const {
+    Grid grid = to_grid(velocity);
+    return at_points(grid);
+  }
+
   /// Shares of its own velocity and affine velocity that a point keeps over a step.
   std::array<double, 2> kept(double dt) const {
     const double rate = scene_.relaxation_time ? 1.0 / *scene_.relaxation_time : 0.0;
     switch (scene_.transfer) {
       case Transfer::pic:
       case Transfer::apic:
+      case Transfer::tpic:
+      case Transfer::xpic:
+      case Transfer::fmpm:
         return {0.0, 0.0};
       case Transfer::flip:
       case Transfer::aflip:
@@ -70,12 +137,17 @@ class Model {
     Particle p;
     p.x = {point[X], point[Y]};
     p.v = {point[VX], point[VY]};
-    if (scene_.transfer != Transfer::pic && scene_.transfer != Transfer::flip)
+    if (scene_.transfer == Transfer::apic || scene_.transfer == Transfer::aflip ||
+        scene_.transfer == Transfer::relaxed || scene_.transfer == Transfer::tpic)
       p.L = {{{point.affine[0], point.affine[1]}, {point.affine[2], point.affine[3]}}};
     p.stress = {{{point[SXX], point[SXY]}, {point[SXY], point[SYY]}}};
     p.mass = point[MASS];
     p.volume = point[MASS] / point[RHO];
     p.body_force = gravity_;
+    scatter_with_images(grid, p);
+  }
+
+  void scatter_with_images(Grid& grid, const Particle& p) const {
     // itself, its images in the walls across x, and the images of those in the walls across y
     std::vector<Particle> row{p};
     add_images(row, {scene_.left, scene_.right}, 0);

@@ -85,12 +85,13 @@ TEST_P(ReferenceStepTest, ClayOnNoSlipBetweenSlip) {
 }
 
 TEST_P(ReferenceStepTest, EveryTransfer) {
-  for (const Transfer transfer :
-       {Transfer::pic, Transfer::flip, Transfer::aflip, Transfer::relaxed}) {
+  for (const Transfer transfer : {Transfer::pic, Transfer::flip, Transfer::aflip, Transfer::relaxed,
+                                  Transfer::tpic, Transfer::xpic, Transfer::fmpm}) {
     SCOPED_TRACE(transfer_names[static_cast<std::size_t>(transfer)]);
     Scene scene = melee(GetParam(), {Wall::Kind::slip}, {Wall::Kind::no_slip}, mu_i(2e4));
     scene.transfer = transfer;
     if (transfer == Transfer::relaxed) scene.relaxation_time = 2e-3;  // about two steps
+    scene.order = 3;                                                  // of xpic and fmpm
     expect_same(scene, 100);
   }
 }

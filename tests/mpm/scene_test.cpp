@@ -159,5 +159,48 @@ TEST(Scene, a_lithostatic_state_follows_from_the_weight) {
       "body[0].initial.K0: the initial stress is beyond yield: tau/p must be <= mu_0 at rest");
 }
 
+TEST(Scene, transfers_that_do_not_go_with_all_walls_and_solvers) {
+  Scene scene = sound();
+  scene.left = scene.right = {Wall::Kind::periodic};
+  for (const Transfer transfer : {Transfer::pic, Transfer::flip, Transfer::apic, Transfer::aflip,
+                                  Transfer::relaxed, Transfer::tpic}) {
+    scene.transfer = transfer;
+    EXPECT_EQ(complaint(scene), "") << name_of(transfer);
+  }
+  for (const Transfer transfer : {Transfer::xpic, Transfer::fmpm}) {
+    const std::string why =
+        ": a periodic edge or a wall that moves does not go with step.transfer = \"" +
+        std::string(name_of(transfer)) + "\" yet; any other transfer does";
+    scene = sound();
+    scene.transfer = transfer;
+    EXPECT_EQ(complaint(scene), "");
+    scene.left = scene.right = {Wall::Kind::periodic};
+    EXPECT_EQ(complaint(scene), "domain.left" + why);
+    scene = sound();
+    scene.transfer = transfer;
+    scene.floor = {Wall::Kind::no_slip};
+    EXPECT_EQ(complaint(scene), "");
+    scene.floor.speed = 0.1;
+    EXPECT_EQ(complaint(scene), "domain.floor" + why);
+  }
+
+  scene = sound();
+  scene.bodies[0].law.options["form"] = "regularised";
+  scene.viscosity = Viscosity::implicit_solve;
+  for (const Transfer transfer :
+       {Transfer::pic, Transfer::flip, Transfer::apic, Transfer::aflip, Transfer::relaxed}) {
+    scene.transfer = transfer;
+    EXPECT_EQ(complaint(scene), "") << name_of(transfer);
+  }
+  for (const Transfer transfer : {Transfer::tpic, Transfer::xpic, Transfer::fmpm}) {
+    scene.transfer = transfer;
+    EXPECT_EQ(complaint(scene),
+              "step.transfer: transfer = \"" + std::string(name_of(transfer)) +
+                  "\" does not go with step.viscosity = \"implicit\": the strain rates that it "
+                  "solves for are the affine gradients of \"relaxed\", \"apic\", \"aflip\", "
+                  "\"flip\" and \"pic\"");
+  }
+}
+
 }  // namespace
 }  // namespace repose::mpm

@@ -22,6 +22,8 @@ template <>
 struct Named<QuadraticKernel> {
   static constexpr Kernel kernel = Kernel::quadratic;
 };
+template <class K>
+struct Named<SplineGradient<K>> : Named<K> {};
 
 template <class K>
 class TransferTest : public ::testing::Test {
@@ -59,7 +61,8 @@ void gather(const VelocityTile& tile, PointSet& points) {
   }
 }
 
-using Kernels = ::testing::Types<CubicKernel, QuadraticKernel>;
+using Kernels = ::testing::Types<CubicKernel, QuadraticKernel, SplineGradient<CubicKernel>,
+                                 SplineGradient<QuadraticKernel>>;
 TYPED_TEST_SUITE(TransferTest, Kernels);
 
 // 200 terms of order one per node, in another order: 200 eps, times the largest |L|h or V σ D⁻¹h
@@ -69,7 +72,7 @@ constexpr double round_off = 200 * 2.2e-16 * 12;
 TYPED_TEST(TransferTest, EveryTileEntryIsTheBruteForceSum) {
   const PointSet points = this->points_near_block(0.999);
   const Tile tile = this->scattered(points);
-  reference::Grid grid(h, Named<TypeParam>::kernel);
+  reference::Grid grid(h, Named<TypeParam>::kernel, TypeParam::spline_gradient);
   for (std::size_t s = 0; s < points.count; ++s) grid.scatter(particle(points, s));
   for (std::size_t n = 0; n < tile_nodes; ++n) {
     const auto at = grid.nodes.extract({origin[0] + static_cast<int>(n) % tile_stride,
@@ -91,7 +94,8 @@ TYPED_TEST(TransferTest, EveryTileEntryIsTheBruteForceSum) {
 TYPED_TEST(TransferTest, ConservesMassMomentumAndAngularMomentum) {
   const PointSet points = this->points_near_block(0.9);
   const Tile tile = this->scattered(points);
-  const double D = reference::Grid(h, Named<TypeParam>::kernel).moment();
+  const double D =
+      reference::Grid(h, Named<TypeParam>::kernel, TypeParam::spline_gradient).moment();
   double mass = 0, px = 0, py = 0, spin = 0;
   for (std::size_t s = 0; s < points.count; ++s) {
     const reference::Particle p = particle(points, s);
@@ -185,7 +189,7 @@ TYPED_TEST(TransferTest, GatherIsTheBruteForceSum) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> sign(-1.0, 1.0);
   VelocityTile tile;
-  reference::Grid grid(h, Named<TypeParam>::kernel);
+  reference::Grid grid(h, Named<TypeParam>::kernel, TypeParam::spline_gradient);
   for (std::size_t n = 0; n < tile_nodes; ++n) {
     tile.vx[n] = sign(random);
     tile.vy[n] = sign(random);
