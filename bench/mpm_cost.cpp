@@ -45,7 +45,7 @@ std::optional<TransferKind> kind_of(std::string_view transfer) {
 //   strain and spin                    6                                    6           6
 //   ledger and signals                 34, viscous law 36                  34          34
 //
-// The grid: every tile hands 5 channels of 13 × 9 nodes to the nodes (one addition each), every
+// The grid: every tile hands 5 channels of 13 × 13 nodes to the nodes (one addition each), every
 // node takes 30 (velocities before and after forces, three sums of the ledger).
 //
 // Bytes: what two sweeps over the points load and store, each field once per sweep, and what the
@@ -53,8 +53,8 @@ std::optional<TransferKind> kind_of(std::string_view transfer) {
 //   P2G loads   x, v, σ (3), ρ, m: 9 doubles; affine: 4 more
 //   G2P and law load x, σ (4), ρ, m, state: 8 + s; keeps: v, 2 more; apart: 4 more
 //               store x, v, L, σ, ρ, state: 13 + s; apart: 4 more
-//   a tile is cleared (5 × 144), read (5 × 117), and filled again from the nodes (2 × 117, keeps 4)
-//   a block of nodes (6 × 32) is stored
+//   a tile is cleared (5 × 208), read (5 × 169), and filled again from the nodes (2 × 169, keeps 4)
+//   a block of nodes (6 × 64) is stored
 std::optional<Work> transfer_work(Kernel kernel, Transfer transfer, std::size_t states,
                                   bool viscous, double tiles_per_point,
                                   double node_blocks_per_point) {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "mpm/tile_exchange.hpp"
+
 namespace repose::mpm {
 namespace {
 
@@ -165,20 +167,8 @@ void ViscousOperator::place_points(std::size_t block) {
 
 void ViscousOperator::gather(const NodeVector& v, std::size_t block, VectorTile& tile) const {
   const PointBlock& pb = grid_->point_blocks[block];
-  tile.x.fill(0.0);
-  tile.y.fill(0.0);
-  for (int dy = -1; dy <= 1; ++dy)
-    for (int dx = -1; dx <= 1; ++dx) {
-      const std::int32_t source = pb.node_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
-      if (source < 0) continue;
-      const NodeField& from = v[static_cast<std::size_t>(source)];
-      for_each_shared_row(-dx, -dy, [&](std::size_t node, std::size_t entry, auto columns) {
-        for (std::size_t i = 0; i < columns; ++i) {
-          tile.x[entry + i] = from.x[node + i];
-          tile.y[entry + i] = from.y[node + i];
-        }
-      });
-    }
+  fill_tile(pb, tile.x, [&](std::size_t k) { return v[k].x.data(); });
+  fill_tile(pb, tile.y, [&](std::size_t k) { return v[k].y.data(); });
 }
 
 /// Owners sum what the tiles around put on their nodes, always in the same order.

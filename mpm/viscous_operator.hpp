@@ -106,7 +106,7 @@ class ViscousOperator {
     std::vector<PointData> data;  ///< by slot
     PointSet* points = nullptr;
   };
-  struct VectorTile {
+  struct alignas(64) VectorTile {
     std::array<double, tile_nodes> x, y;
   };
 
