@@ -232,7 +232,8 @@ SeriesRow Simulation::Impl::diagnostics() {
         ++row.points_separated;
     }
   if (row.mass_kg_per_m == 0.0) row.density_min = 0.0;  // all has left through an open edge
-  const Deposit deposit(bodies, grid.h(), grid.nx());
+  const Deposit deposit(bodies, grid.h(), grid.nx(), walls.periodic());
+  row.front_99_m = mass_front(bodies, grid.h() * grid.nx(), 0.99, walls.periodic());
   row.front_m = deposit.front(0.02 * initial_height);
   row.height_m = deposit.depth.front();
   return row;
@@ -275,7 +276,7 @@ std::int64_t Simulation::live_cells() const {
 double Simulation::next_dt() const { return impl_->choose_step(HUGE_VAL); }
 
 Simulation::Profile Simulation::profile() const {
-  const Deposit deposit(impl_->bodies, impl_->grid.h(), impl_->grid.nx());
+  const Deposit deposit(impl_->bodies, impl_->grid.h(), impl_->grid.nx(), impl_->walls.periodic());
   Profile p;
   for (std::size_t i = 0; i < deposit.depth.size(); ++i) {
     p.x_m.push_back(static_cast<double>(i) * impl_->grid.h());
