@@ -343,7 +343,7 @@ std::vector<std::string> Simulation::warnings() const {
   const Impl& s = *impl_;
   if (s.scene.dt) {
     const double courant =
-        std::max(s.fixed_step_excess, *s.scene.dt * s.signals.signal / s.grid.h());
+        std::max(s.fixed_step_excess, *s.scene.dt * s.seen().signal / s.grid.h());
     const double viscous = std::max(s.viscous_step_excess, *s.scene.dt * s.signals.viscous_rate);
     if (courant > safe_courant(s.scene.kernel))
       list.push_back(
@@ -372,8 +372,17 @@ Simulation::Counters Simulation::counters() const {
   for (const PointSet& points : s.bodies)
     bytes += static_cast<double>(points.slots() *
                                  (points.fields * sizeof(double) + sizeof(std::int64_t)));
-  return {s.steps > 0 ? s.dt_min : 0.0, s.dt_max,        s.wall_corrections, s.sorts,
-          s.newton_iterations,          s.cg_iterations, bytes / 1e6,        s.threads};
+  std::size_t asleep = 0;
+  for (const PointBlock& pb : s.grid.point_blocks) asleep += pb.rest.asleep ? pb.points() : 0;
+  return {.dt_min_s = s.steps > 0 ? s.dt_min : 0.0,
+          .dt_max_s = s.dt_max,
+          .wall_corrections = s.wall_corrections,
+          .sorts = s.sorts,
+          .points_asleep = static_cast<std::int64_t>(asleep),
+          .newton_iterations = s.newton_iterations,
+          .cg_iterations = s.cg_iterations,
+          .memory_MB = bytes / 1e6,
+          .threads = s.threads};
 }
 
 std::string Simulation::Impl::describe(const PointSet& points, std::size_t body,

@@ -101,6 +101,7 @@ class Simulation {
     double dt_min_s, dt_max_s;
     std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
     std::int64_t sorts;
+    std::int64_t points_asleep;                     ///< now (Scene::sleep_speed)
     std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
     double memory_MB;                               ///< of points and grid
     int threads;
