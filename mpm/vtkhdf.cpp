@@ -264,8 +264,8 @@ std::vector<std::string> names_in(hid_t group) {
   std::vector<std::string> names;
   for (hsize_t i = 0; i < info.nlinks; ++i) {
     const auto name = [&](char* text, std::size_t size) {
-      const ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, text,
-                                                size, H5P_DEFAULT);
+      const ssize_t length =
+          H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, text, size, H5P_DEFAULT);
       if (length < 0) fail("list the fields");
       return static_cast<std::size_t>(length);
     };

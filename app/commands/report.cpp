@@ -37,11 +37,11 @@ std::string title_of(const std::vector<Json>& results) {
 }
 
 ExitCode report(const std::vector<std::string>& folders, const CommonOptions& options) {
-  const fs::path page = options.output.empty() ? ResultFolder::default_path("report.html")
-                                               : fs::path(options.output);
+  const fs::path page =
+      options.output.empty() ? ResultFolder::default_path("report.html") : fs::path(options.output);
   if (fs::is_directory(page))
-    throw BadInput({fmt::format("-o {}: is a folder; give the page a name: -o {}",
-                                options.output, (page / "report.html").string())});
+    throw BadInput({fmt::format("-o {}: is a folder; give the page a name: -o {}", options.output,
+                                (page / "report.html").string())});
   std::vector<Json> results;
   std::vector<fs::path> seen;
   for (const std::string& folder : folders) {

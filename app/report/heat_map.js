@@ -28,23 +28,24 @@ function edges_of(values, log) {
 const distinct = (values) => [...new Set(values)].filter(Number.isFinite).sort((a, b) => a - b);
 const by_decades = (sorted) => sorted.length > 3 && sorted[0] > 0 && sorted.at(-1) / sorted[0] > 100 && sorted[1] - sorted[0] < 0.5 * (sorted.at(-1) - sorted.at(-2));
 
-/// spec: {title, x, y, z: label, at: [[x, y, z], …] with z a number or a word, log}
+/// spec: {title, x, y: label, layers: [{z: label, at: [[x, y, z], …]}]}, z a number or a word; with
+/// several layers the reader chooses.
 class HeatMap {
   constructor(spec) {
     this.spec = spec;
-    this.words_of = spec.at.some((c) => typeof c[2] === "string") ? [...new Set(spec.at.map((c) => c[2]))] : null;
     this.plot = svg("svg", {class: "plot", tabindex: 0, role: "img"});
     this.tip = el("div", {class: "tip", role: "status", hidden: ""});
     this.key_row = el("div", {class: "row"});
-    this.note = el("p", {class: "note"});
     this.log_button = el("button", {type: "button", class: "switch", title: "Logarithmic colours", onclick: () => { this.log = !this.log; this.draw(); }}, "log colours");
+    this.choice = spec.layers.length < 2 ? null : el("select", {"aria-label": "Quantity of the map", onchange: () => { this.choose(Number(this.choice.value)); this.draw(); }},
+      spec.layers.map((layer, i) => el("option", {value: i}, layer.z.short)));
     this.element = el("figure", {class: "chart"},
-      el("div", {class: "head"}, el("h3", {}, spec.title), el("div", {class: "tools"}, this.words_of ? null : this.log_button)),
-      this.plot, this.key_row, this.note, this.tip);
-    this.numbers = this.words_of ? [] : distinct(spec.at.map((c) => c[2]));
-    this.log = spec.log ?? by_decades(this.numbers.filter((z) => z > 0));
-    this.xs = distinct(spec.at.map((c) => c[0]));
-    this.ys = distinct(spec.at.map((c) => c[1]));
+      el("div", {class: "head"}, el("h3", {}, spec.title), el("div", {class: "tools"}, this.choice, this.log_button)),
+      this.plot, this.key_row, this.tip);
+    this.xs = distinct(spec.layers[0].at.map((c) => c[0]));
+    this.ys = distinct(spec.layers[0].at.map((c) => c[1]));
+    this.hatch = `hatch${HeatMap.all.length}`;
+    this.choose(0);
     this.plot.addEventListener("pointermove", (e) => { const r = this.plot.getBoundingClientRect(); this.show(this.cell_at(e.clientX - r.left, e.clientY - r.top)); });
     this.plot.addEventListener("pointerleave", () => this.hide());
     this.plot.addEventListener("blur", () => this.hide());
@@ -54,10 +55,19 @@ class HeatMap {
     HeatMap.all.push(this);
   }
 
+  choose(layer) {
+    ({z: this.z, at: this.values} = this.spec.layers[layer]);
+    this.words_of = this.values.some((c) => typeof c[2] === "string") ? [...new Set(this.values.map((c) => c[2]))] : null;
+    this.numbers = this.words_of ? [] : distinct(this.values.map((c) => c[2]));
+    this.log = by_decades(this.numbers.filter((z) => z > 0));
+    this.log_button.style.display = this.words_of ? "none" : "";
+    this.hide();
+  }
+
   colour(z) {
     if (this.words_of) return colour_of(this.words_of.indexOf(z));
     const v = this.log ? Math.log10(z) : z;
-    return Number.isFinite(v) && (!this.log || z > 0) ? shade((v - this.low) / (this.high - this.low || 1)) : no_number;
+    return Number.isFinite(v) && (!this.log || z > 0) ? shade((v - this.low) / (this.high - this.low || 1)) : `url(#${this.hatch})`;
   }
 
   draw() {
@@ -74,16 +84,17 @@ class HeatMap {
     const x_ticks = (log_x ? log_ticks : linear_ticks)(ex[0], ex.at(-1), Math.max(2, Math.floor(inner / 75)));
     const px = (v) => room.left + ((v - ex[0]) / (ex.at(-1) - ex[0])) * inner;
     const py = (v) => room.top + (1 - (v - ey[0]) / (ey.at(-1) - ey[0])) * tall;
-    this.cells = this.spec.at.filter((c) => Number.isFinite(c[0]) && Number.isFinite(c[1])).map((c) => {
+    this.cells = this.values.filter((c) => Number.isFinite(c[0]) && Number.isFinite(c[1])).map((c) => {
       const i = this.xs.indexOf(c[0]), j = this.ys.indexOf(c[1]);
       return {c, x: px(ex[i]), y: py(ey[j + 1]), w: px(ex[i + 1]) - px(ex[i]), h: py(ey[j]) - py(ey[j + 1])};
     });
     this.cursor = svg("rect", {fill: "none", style: "stroke:var(--ink)", "stroke-width": 2, visibility: "hidden"});
     this.plot.setAttribute("height", height);
     this.plot.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    const z = this.spec.z;
+    const z = this.z;
     this.plot.setAttribute("aria-label", `${this.spec.title}: map of ${z.text} over ${this.spec.x.text} and ${this.spec.y.text}. Arrow keys read its cells.`);
     this.plot.replaceChildren(
+      svg("pattern", {id: this.hatch, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)"}, svg("rect", {width: 6, height: 6, style: "fill:var(--page)"}), svg("rect", {width: 2, height: 6, fill: no_number})),
       svg("g", {"shape-rendering": "crispEdges"}, this.cells.map((r) => svg("rect", {x: r.x, y: r.y, width: r.w + 0.6, height: r.h + 0.6, style: `fill:${this.colour(r.c[2])}`}))),
       ...x_ticks.map((t) => svg("text", {x: px(t.value), y: room.top + tall + 16, "text-anchor": "middle"}, t.text)),
       ...y_ticks.map((t) => svg("text", {x: room.left - 6, y: py(t.value) + 4, "text-anchor": "end"}, t.text)),
@@ -92,14 +103,12 @@ class HeatMap {
       svg("text", {class: "name", transform: `translate(13 ${room.top + tall / 2}) rotate(-90)`, "text-anchor": "middle"}, svg_label(this.spec.y)),
       this.cursor);
     const end = (v) => number(this.log ? 10 ** v : v, 3);
-    const strange = this.words_of ? 0 : this.spec.at.filter((c) => !Number.isFinite(c[2]) || (this.log && c[2] <= 0)).length;
+    const strange = this.words_of ? 0 : this.values.filter((c) => !Number.isFinite(c[2]) || (this.log && c[2] <= 0)).length;
     this.key_row.replaceChildren(...(this.words_of
       ? this.words_of.map((w) => el("span", {class: "note"}, box_of(this.colour(w)), ` ${w || "(empty)"}`))
       : [el("div", {class: "scale"}, el("span", {}, z.text), el("span", {}, end(this.low)), el("span", {class: "ramp", style: `background:${ramp()}`}), el("span", {}, end(this.high))),
-        strange ? el("span", {class: "note"}, box_of(no_number), ` no number: ${strange} of ${this.spec.at.length}`) : null].filter(Boolean)));
+        strange ? el("span", {class: "note"}, box_of(`repeating-linear-gradient(135deg, ${no_number} 0 2px, transparent 2px 5px)`), ` not on the scale: ${strange} of ${this.values.length}`) : null].filter(Boolean)));
     this.log_button.setAttribute("aria-pressed", String(Boolean(this.log)));
-    this.note.hidden = !this.spec.note;
-    this.note.textContent = this.spec.note ?? "";
   }
 
   cell_at(x, y) { return this.cells?.find((r) => x >= r.x && x < r.x + r.w && y >= r.y && y < r.y + r.h); }
@@ -108,7 +117,7 @@ class HeatMap {
     this.at = cell;
     for (const [k, v] of Object.entries({x: cell.x, y: cell.y, width: cell.w, height: cell.h, visibility: "visible"})) this.cursor.setAttribute(k, v);
     const line = (l, v) => el("div", {}, el("span", {}, l.name, l.sub ? el("sub", {}, l.sub) : null), el("b", {}, typeof v === "string" ? v : `${number(v)}${l.unit ? " " + l.unit : ""}`));
-    this.tip.replaceChildren(line(this.spec.x, cell.c[0]), line(this.spec.y, cell.c[1]), line(this.spec.z, cell.c[2]));
+    this.tip.replaceChildren(line(this.spec.x, cell.c[0]), line(this.spec.y, cell.c[1]), line(this.z, cell.c[2]));
     this.tip.hidden = false;
     const wide = this.tip.offsetWidth, right = cell.x + cell.w + 10;
     this.tip.style.left = `${right + wide < this.element.clientWidth ? right : Math.max(0, cell.x - wide - 10)}px`;

@@ -58,10 +58,10 @@ function group(text) {
 
 const units = [
   ["_J_per_m3", "J/m³", 1], ["_J_per_m", "J/m", 1], ["_kg_per_m3", "kg/m³", 1], ["_kg_per_m", "kg/m", 1],
-  ["_m_per_s", "m/s", 1], ["_per_cpu_s", "1/s", 1], ["_per_s", "1/s", 1], ["_kPa", "kPa", 1], ["_Pa", "kPa", 1e-3],
+  ["_m_per_s", "m/s", 1], ["_per_cpu_s", "1/s", 1], ["_1_per_s", "1/s", 1], ["_1_per_m", "1/m", 1], ["_per_s", "1/s", 1], ["_kPa", "kPa", 1], ["_Pa", "kPa", 1e-3],
   ["_percent", "%", 1], ["_MB", "MB", 1], ["_deg", "°", 1], ["_s", "s", 1], ["_m", "m", 1],
 ];
-const greek = {eps: "ε", gamma: "γ", sigma: "σ", tau: "τ", mu: "μ", eta: "η", lambda: "λ", kappa: "κ", rho: "ρ", nu: "ν", phi: "φ", delta: "Δ", Gamma: "Γ"};
+const greek = {eps: "ε", deps: "Δε", gamma: "γ", sigma: "σ", tau: "τ", mu: "μ", eta: "η", lambda: "λ", kappa: "κ", rho: "ρ", nu: "ν", phi: "φ", delta: "Δ", Gamma: "Γ"};
 const words = {
   kinetic: "kinetic energy", potential: "potential energy", elastic: "elastic energy", dissipated: "dissipated energy",
   dt: "time step", mean_dt: "mean time step", wall: "wall time", cpu: "CPU time", front_max: "farthest point", h: "cell h",
@@ -82,7 +82,7 @@ function label(column) {
   if (words[base]) return made(words[base], "", unit, factor);
   const [head, ...rest] = base.split("_");
   if (greek[head] && rest.length < 2) {
-    if (!found && (head === "eps" || head === "gamma")) [unit, factor] = ["%", 100];
+    if (!found && (head.endsWith("eps") || head === "gamma")) [unit, factor] = ["%", 100];
     return made(greek[head], rest.join(" "), unit, factor);
   }
   if (head.length === 1 && rest.length === 1 && rest[0].length <= 3) return made(head, rest[0], unit, factor);

@@ -82,8 +82,8 @@ Range range_of(std::span<const float> values) {
   return range;
 }
 
-/// Where the colours begin and end: percentiles, but all of a few whole numbers, and from zero where
-/// zero is near.
+/// Where the colours begin and end: percentiles, but all of a few whole numbers, and from zero
+/// where zero is near.
 Range colours_of(std::span<const float> values, const Range& extremes) {
   std::vector<float> sorted;
   for (const float x : values)
@@ -105,8 +105,8 @@ Range colours_of(std::span<const float> values, const Range& extremes) {
 Json pack_frames(std::size_t count, const std::function<mpm::Frame(std::size_t)>& next,
                  const PackLimits& limits) {
   const std::vector<std::size_t> chosen = thin_evenly(count, limits.frames);
-  const std::size_t most = std::min(
-      limits.points, limits.points_in_all / std::max<std::size_t>(chosen.size(), 1));
+  const std::size_t most =
+      std::min(limits.points, limits.points_in_all / std::max<std::size_t>(chosen.size(), 1));
   Gathered all;
   for (const std::size_t i : chosen) gather(all, next(i), most);
 
@@ -128,8 +128,8 @@ Json pack_frames(std::size_t count, const std::function<mpm::Frame(std::size_t)>
 
   Json fields = Json::array();
   for (const auto& [name, values] : all.fields) {
-    const auto strange = std::count_if(values.begin(), values.end(),
-                                       [](float v) { return !std::isfinite(v); });
+    const auto strange =
+        std::count_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
     lost += static_cast<std::size_t>(strange);
     const Range extremes = range_of(values);
     if (extremes.empty()) continue;

@@ -127,10 +127,10 @@ function draw_map(panel, sources) {
   const [x, y, z] = panel.map;
   return sources.filter(({table}) => [x, y, z].every((c) => has(table, c))).flatMap(({label: name, table}) =>
     groups_of(table, panel.facet.filter((c) => has(table, c))).map((part) => {
-      const words = is_text(table, z);
-      const scaled = (column, i) => label(column).factor * column_of(table, column)[i];
-      const at = part.rows.map((i) => [scaled(x, i), scaled(y, i), words ? column_of(table, z)[i] : scaled(z, i)]);
-      return new HeatMap({title: [sources.length > 1 ? name : "", ...part.key].filter(Boolean).join(" · ") || `${capital(label(z).name)}`, x: label(x), y: label(y), z: label(z), at}).element;
+      const value = (column, i) => (is_text(table, column) ? column_of(table, column)[i] : label(column).factor * column_of(table, column)[i]);
+      const layers = [z, ...(panel.rest ?? [])].map((c) => ({z: label(c), at: part.rows.map((i) => [value(x, i), value(y, i), value(c, i)])}));
+      const title = [sources.length > 1 ? name : "", panel.title ?? capital(label(z).name), ...part.key].filter(Boolean).join(" · ");
+      return new HeatMap({title, x: label(x), y: label(y), layers}).element;
     }));
 }
 
@@ -170,7 +170,7 @@ function charts_of(kind, file, sources) {
   if (panels[kind]) return [];
   const {table} = sources[0];
   const map = map_columns(table);
-  if (map) return draw_map(map, sources);
+  if (map) return draw_map({...map, title: capital(file.replace(/\.csv$/, "").replaceAll("_", " "))}, sources);
   const numeric = numeric_columns(table);
   if (numeric.length < 2) return [];
   const columns = text_columns(table).filter((c) => groups_of(table, [c]).length <= 24);
@@ -192,7 +192,7 @@ function map_columns(table) {
         return nx >= 3 && ny >= 3 && cells === rows.length && cells >= 0.7 * nx * ny;
       });
       const rest = [...numeric.slice(a + 2), ...words.filter((c) => !by.includes(c))];
-      if (grid && rest.length) return {map: [x, y, rest[0]], facet: by};
+      if (grid && rest.length) return {map: [x, y, rest[0]], rest: rest.slice(1), facet: by};
     }
   }
   return null;
@@ -215,6 +215,7 @@ function explorer(file, sources) {
   function redraw() {
     const panel = {title: `${y.value} over ${x.value}`, x: x.value, y: [y.value]};
     if (by.value !== "(one)") Object.assign(panel, {group: [by.value], marks: true});
+    Chart.all = Chart.all.filter((chart) => !host.contains(chart.element));
     host.replaceChildren(...draw_panel(panel, sources));
   }
   redraw();

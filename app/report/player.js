@@ -63,7 +63,7 @@ class Player {
   /// The moment with most of the first field, speed where there is one: the page opens with motion.
   liveliest() {
     if (this.field === null) return 0;
-    const run = this.runs[0], codes = run.codes.get(this.field);
+    const run = this.runs.find((r) => r.codes.has(this.field)), codes = run.codes.get(this.field);
     const mean = run.frames.times.map((_, k) => {
       let sum = 0;
       for (let i = run.starts[k]; i < run.starts[k + 1]; ++i) sum += codes[i] === 255 ? 0 : codes[i];
@@ -183,7 +183,7 @@ class Player {
       c.fillText(t.value === x_ticks.at(-1).value ? `${t.text} m` : t.text, px(t.value), py(y0) + 18);
     }
     c.textAlign = "right";
-    for (const t of linear_ticks(y0, y1, Math.max(2, Math.floor((scale * (y1 - y0)) / 55)))) {
+    for (const t of linear_ticks(y0, y1, Math.max(2, Math.floor((scale * (y1 - y0)) / 42)))) {
       c.beginPath(); c.moveTo(px(x0) - 5, py(t.value)); c.lineTo(px(x0), py(t.value)); c.stroke();
       c.fillText(t.text, px(x0) - 8, py(t.value) + 4);
     }

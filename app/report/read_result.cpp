@@ -21,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::uintmax_t largest_picture = 4'000'000;  ///< bytes; a larger one stays out of the page
+constexpr std::uintmax_t largest_picture =
+    4'000'000;  ///< bytes; a larger one stays out of the page
 
 std::string text_of(const fs::path& file) {
   errno = 0;
@@ -63,8 +64,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   if (!results.empty())
     below = fmt::format("; {} below it {}: try {}", results.size() == 1 ? "one" : "those",
                         results.size() == 1 ? "is" : "are",
-                        results.size() == 1 ? results.begin()->string()
-                                            : (folder / "*").string());
+                        results.size() == 1 ? results.begin()->string() : (folder / "*").string());
   throw BadInput({fmt::format("{}: is not a result folder: it has no summary.json{}",
                               folder.string(), below)});
 }
@@ -97,8 +97,8 @@ Json read_result(const fs::path& folder) {
   result["path"] = folder.string();
   const fs::path clean = folder.lexically_normal();
   const fs::path name = clean.has_filename() ? clean.filename() : clean.parent_path().filename();
-  result["label"] = name == "." ? fs::absolute(folder).parent_path().filename().string()
-                                : name.string();
+  result["label"] =
+      name == "." ? fs::absolute(folder).parent_path().filename().string() : name.string();
   result["summary"] = json_of(folder / "summary.json");
   const auto kind = result["summary"].find("kind");
   result["kind"] = kind != result["summary"].end() && kind->is_string() ? *kind : Json("run");
