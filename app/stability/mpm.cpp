@@ -39,7 +39,7 @@ class MethodFailures {
                    AxisScale scale, F&& measure) {
     Axes& axes = figure.add_axes();
     axes.title = title;
-    axes.x.label = "points per cell";
+    axes.x = {"points per cell", AxisScale::linear, 0.0, 17.0};
     axes.y = {label, scale};
     Json json;
     for (const mpm::Kernel kernel : {mpm::Kernel::cubic, mpm::Kernel::quadratic})
@@ -88,7 +88,7 @@ class MethodFailures {
   Json ringing(Figure& figure) {
     Axes& axes = figure.add_axes();
     axes.title = "ringing: pressure noise of the heap at rest";
-    axes.x.label = "points per cell";
+    axes.x = {"points per cell", AxisScale::linear, 0.0, 17.0};
     axes.y = {"noise of p over the overburden, rms (%)", AxisScale::linear, 0.0, {}};
     Json json;
     for (const double h : quick_ ? std::vector<double>{0.05} : std::vector<double>{0.025, 0.0125}) {

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 using point::ShearFlow;
 
 /// Growth rates within this share of ηk²/ρ are too close to neutral to be judged.
-constexpr double margin = 0.01;
+constexpr double margin = 0.002;
 /// ηk²/ρ over ck of the waves that judge the (incompressible) criterion, and K/p.
 constexpr double acoustic_share = 0.05;
 constexpr double stiffness = 1e5;
@@ -83,7 +83,7 @@ class GrainMaps {
     const int m = input_.quick ? 5 : 13;
     const double mu_0 = value("mu_0"), mu_d = value("mu_d");
     Figure figure("Ill-posed flow of μ(I): fastest growth of short waves in plane shear",
-                  "colour: measured with the law's update, in units of ηk²/ρ; circles: C > 0, "
+                  "colour: measured with the law's update, in units of ηk²/ρ; rings: C > 0, "
                   "ill-posed");
     figure.columns = 2;
     std::string csv = "map,I,mu_0,mu_d,C,predicted,measured,angle_deg,outside_margin,agrees\n";
@@ -143,7 +143,7 @@ class GrainMaps {
   /// Growth against wavelength: unbounded without a compressibility, bounded and rising with K.
   Json refinement() {
     const double I = 0.01;
-    const auto shares = decades(0.02, 8.0, input_.quick ? 5 : 14);
+    const auto shares = decades(0.1, 20.0, input_.quick ? 5 : 14);
     Figure figure(fmt::format("Growth over the wavelength, I = {}, p = {:.3g} Pa", I, input_.p),
                   "the fastest direction; dashed: incompressible, gηk²/ρ");
     Axes& axes = figure.add_axes();
@@ -208,7 +208,7 @@ class GrainMaps {
     Axes& over_I = figure.add_axes();
     over_I.title = "flow curves";
     over_I.x = {"I", AxisScale::logarithmic};
-    over_I.y = {"fastest growth", AxisScale::linear, -1.0, 0.2};
+    over_I.y = {"fastest growth", AxisScale::linear, -0.4, 0.15};
     const std::vector<double> ends{numbers.front(), numbers.back()}, zero{0.0, 0.0};
     over_I.line("", ends, zero, {Colour::grey, 1.0});
     for (const auto& [form, colour] : {std::pair{"elastoviscoplastic", Colour::blue},

@@ -65,7 +65,7 @@ class StepMaps {
       Axes& axes = figure.add_axes();
       axes.title = fmt::format("{}, {}, fluid", place == Place::bulk ? "bulk" : "free surface",
                                mpm::name_of(kernel));
-      axes.x.label = "points per cell";
+      axes.x = {"points per cell", AxisScale::linear, 0.0, 17.0};
       axes.y = {"cΔt/h", AxisScale::linear, 0.0, {}};
       axes.legend = Legend::right;
       for (const mpm::Transfer transfer : transfers()) {
@@ -83,8 +83,7 @@ class StepMaps {
       }
       const double theory =
           mpm::courant_of_theory({kernel, mpm::Transfer::apic, 4, Place::bulk, 0.5, false});
-      const std::vector<double> ends{static_cast<double>(counts.front()), counts.back() + 1e-3},
-          level{theory, theory};
+      const std::vector<double> ends{0.0, 17.0}, level{theory, theory};
       axes.dashed("theory", ends, level, {Colour::black, 1.2});
     }
   }
