@@ -14,14 +14,15 @@ struct Discretisation {
   double cells = 8.0;  ///< across the problem: its length over h
 };
 
-/// Cell crossing: a uniformly compressed elastic block that fills a periodic strip moves through
-/// two cells at a tenth of its wave speed; the largest root mean square of (p − p_0)/p_0 on the
-/// way. 0 is exact.
+/// Cell crossing: an elastic block is drawn out by its own motion, x = (1 + εt)X, with a wave speed
+/// of ε h, so that its points stand ever differently in their cells while they carry stress; the
+/// largest root mean square of ρ(1 + εt)/ρ_0 − 1 until it is half as long again, without the ends.
+/// 0 is exact. (A block moved without strain keeps a regular lattice, of which splines carry
+/// uniform stress exactly.)
 double cell_crossing_error(const Discretisation& d);
 
-/// Numerical fracture: an elastic block too soft to matter is drawn out by its own motion, x = (1 +
-/// εt)X. The stretch at which the points' densities are first off by a tenth (root mean square,
-/// without the outermost ones): beyond it they do not see each other. At most 8.
+/// Numerical fracture: the same block, too soft for its stress to matter. The stretch at which that
+/// measure reaches a tenth: beyond it points do not see each other. At most 8.
 double fracture_stretch(const Discretisation& d);
 
 /// Locking: an elastic block (ν given) on a rough floor bulges under its weight; the farthest that

@@ -20,9 +20,10 @@ class MethodFailures {
     Figure figure("Failures of the method over points per cell and cell size");
     figure.columns = 2;
     Json json;
-    json["cell_crossing"] = over_counts(
-        figure, "cell crossing", "rms (p − p_{0})/p_{0}", "cell_crossing", AxisScale::logarithmic,
-        [](const Discretisation& d) { return mpm::cell_crossing_error(d); });
+    json["cell_crossing"] =
+        over_counts(figure, "cell crossing", "rms error of the density, stretched by half",
+                    "cell_crossing", AxisScale::logarithmic,
+                    [](const Discretisation& d) { return mpm::cell_crossing_error(d); });
     json["fracture_stretch"] = over_counts(
         figure, "numerical fracture", "stretch at which the density is off by 10 %", "fracture",
         AxisScale::linear, [](const Discretisation& d) { return mpm::fracture_stretch(d); });
