@@ -42,21 +42,21 @@ class Collapses {
   /// The linearised update in Cam-Clay loses points; the exact one, from the same step, none.
   Json lost_points(Figure& figure) {
     struct Case {
-      std::string key, title;
-      double dt, tilt;
+      std::string key;
+      double dt, tilt;  ///< dt at h = 12.5 mm, longer in proportion on coarser cells
     };
     Json json = Json::array();
-    for (const Case& c : {Case{"flat", "flat, Δt = 6e-5 s", 6e-5, 0.0},
-                          Case{"tilted", "35°, Δt = 3e-5 s", 3e-5, 35.0}}) {
+    for (const Case& c : {Case{"flat", 6e-5, 0.0}, Case{"tilted", 3e-5, 35.0}}) {
       if (input_.quick && c.tilt > 0.0) continue;
+      const double dt = input_.quick ? 4.0 * c.dt : c.dt;
       mpm::Scene scene = paper_scene(
           "flat_mcc", {h_, fmt::format("scene.tilt_deg={:.1f}", c.tilt),
-                       fmt::format("step.dt={}", c.dt), "step.transfer=apic", "step.sleep_speed=0",
+                       fmt::format("step.dt={}", dt), "step.transfer=apic", "step.sleep_speed=0",
                        fmt::format("grid.points_per_cell={}", input_.quick ? 4 : 16)});
       raise_top_to_cells(scene);
       scene.end_time = input_.quick ? 0.4 : c.tilt > 0.0 ? 0.9 : 1.2;
       Axes& axes = figure.add_axes();
-      axes.title = "Cam-Clay, " + c.title;
+      axes.title = fmt::format("Cam-Clay, {}°, Δt = {} s", c.tilt, dt);
       axes.x.label = "time (s)";
       axes.y = {"points without stress", AxisScale::linear, 0.0, {}};
       for (const bool linearised : {true, false}) {
@@ -75,7 +75,7 @@ class Collapses {
         axes.line(linearised ? "linearised: lost for good" : "exact: apart, and back again", t, y);
         json.push_back({{"case", c.key},
                         {"update", name},
-                        {"dt_s", c.dt},
+                        {"dt_s", dt},
                         {"points_without_stress_at_end", history.rows.back().points_separated},
                         {"ended_at_s", history.rows.back().time_s},
                         {"failure", history.failure}});
