@@ -216,7 +216,13 @@ class GrainMaps {
                                        {"barker_gray", Colour::vermillion}}) {
       std::map<std::string, double> values{{"K", stiffness * input_.p}};
       if (std::string(form) != "elastoviscoplastic") values["r"] = 1e-4;
-      const auto material = grains(input_.grains, form, values);
+      std::unique_ptr<Material> material;
+      try {
+        material = grains(input_.grains, form, values);
+      } catch (const InputError& error) {  // a curve that is nowhere well-posed has no I_1
+        json[form] = {{"left_out", error.what()}};
+        continue;
+      }
       std::vector<double> measured, predicted;
       double most = -HUGE_VAL;
       for (const double I : numbers) {

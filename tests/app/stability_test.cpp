@@ -77,7 +77,7 @@ TEST_F(Stability, Mistakes) {
   EXPECT_EQ(
       command({"stability", "--parts", "mui"}).errors,
       "--set stability.parts=[\"mui\"]: stability.parts[0] must be one of \"clay\", \"mu_i\", "
-      "\"step\", \"mpm\", \"collapse\"; got \"mui\"; did you mean \"mu_i\"?\n");
+      "\"step\", \"mpm\", \"collapse\"; got the string \"mui\"; did you mean \"mu_i\"?\n");
   fs::create_directories(folder);
   const std::string file = (folder / "x.toml").string();
   std::ofstream(file) << "[stability]\npart = [\"step\"]\n";
