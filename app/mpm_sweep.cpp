@@ -63,6 +63,22 @@ double initial_height(const mpm::Scene& scene) {
   return top;
 }
 
+/// Why this scene cannot be run with a transfer; "" if it can, or if it is the scene that is wrong.
+std::string refusal(mpm::Scene scene, mpm::Transfer transfer) {
+  try {
+    mpm::validate(scene);
+  } catch (const InputError&) {
+    return "";
+  }
+  scene.transfer = transfer;
+  try {
+    mpm::validate(scene);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
 void read_result(SweepRun& run, const fs::path& folder) {
   run.summary = nlohmann::json::parse(text_of(folder / "summary.json"), nullptr, false);
   if (!run.summary.is_object())
@@ -76,10 +92,17 @@ void read_result(SweepRun& run, const fs::path& folder) {
 
 }  // namespace
 
-Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick) {
+Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick,
+                    std::vector<std::string>& notes) {
   if (sweep.transfers.empty())
-    for (std::size_t k = 0; k < mpm::transfer_names.size(); ++k)
-      sweep.transfers.push_back(static_cast<mpm::Transfer>(k));
+    for (std::size_t k = 0; k < mpm::transfer_names.size(); ++k) {
+      const auto transfer = static_cast<mpm::Transfer>(k);
+      const std::string why = refusal(scene, transfer);
+      if (why.empty())
+        sweep.transfers.push_back(transfer);
+      else
+        notes.push_back(fmt::format("{} is left out: {}", mpm::name_of(transfer), why));
+    }
   if (sweep.kernels.empty()) sweep.kernels = {scene.kernel};
   if (sweep.cells.empty()) {
     sweep.cells = {4.0 * scene.h};
@@ -118,6 +141,10 @@ std::vector<SweepRun> runs_of(const SceneFile& base, const Sweep& sweep) {
         try {
           mpm::validate(scene);
         } catch (const InputError& error) {
+          mpm::Scene with_own = scene;
+          with_own.transfer = base.scene.transfer;
+          if (const std::string why = refusal(with_own, transfer); !why.empty())
+            throw InputError("chart.transfers", why);
           throw InputError("chart.cells", fmt::format("cells of {} m: {}", h, error.what()));
         }
         const auto add = [&](double courant, std::optional<double> dt) {

@@ -13,10 +13,12 @@
 
 namespace repose::app {
 
-/// What is not given: every transfer, the scene's kernel, cells of 4 and 2 times the scene's h,
-/// Courant numbers of 0.8, 0.4, 0.2, 0.1 unless there are fixed steps. quick: cells of 4 h alone
-/// and Courant numbers of 0.8 and 0.4, so that the whole chart takes seconds.
-Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick);
+/// What is not given: every transfer that the scene admits (a note tells of the others), the
+/// scene's kernel, cells of 4 and 2 times the scene's h, Courant numbers of 0.8, 0.4, 0.2, 0.1
+/// unless there are fixed steps. quick: cells of 4 h alone and Courant numbers of 0.8 and 0.4, so
+/// that the whole chart takes seconds.
+Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick,
+                    std::vector<std::string>& notes);
 
 /// One run of a sweep and, once it is there, its result. Figures keep the names of summary.json.
 struct SweepRun {
@@ -39,7 +41,8 @@ struct SweepRun {
 };
 
 /// Every combination, in the order transfer, kernel, cell size, step, with longer steps first. A
-/// transfer's own settings are the scene's. Errors: InputError, key "chart.cells".
+/// transfer's own settings are the scene's. Errors: InputError, key "chart.cells" or
+/// "chart.transfers".
 std::vector<SweepRun> runs_of(const SceneFile& scene, const Sweep& sweep);
 
 /// Runs of one transfer, kernel and cell size: what only the step tells apart.

@@ -548,7 +548,7 @@ void Simulation::Impl::close_ledger() {
     if (!pb.rest.asleep) point_steps += static_cast<std::int64_t>(pb.points());
 
   const char* cause = "the integration diverges (solver); try a smaller courant";
-  if (scene.dt && fixed_step_excess > 0.8)
+  if (scene.dt && fixed_step_excess > safe_courant(scene.kernel))
     cause =
         "the fixed step dt is too large for the wave speed (input); try a smaller dt, or courant "
         "instead of dt";

@@ -5,7 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mpm/scene.hpp"
+
 namespace repose::mpm {
+
+/// Up to where a fixed step is stable for every law and any point (see stable_step()).
+inline constexpr double safe_courant(Kernel kernel) {
+  return kernel == Kernel::cubic ? 0.82 : 0.71;
+}
 
 /// The fastest signals among a set of points.
 struct Signals {

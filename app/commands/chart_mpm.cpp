@@ -30,7 +30,7 @@ class MpmChart {
     require_kind(input_, FileKind::scene, "chart mpm");
     const ChartTable chart = read_chart(input_);
     scene_ = read_scene(input_);
-    sweep_ = with_defaults(chart.sweep, scene_.scene, quick);
+    sweep_ = with_defaults(chart.sweep, scene_.scene, quick, scene_.notes);
     try {
       runs_ = runs_of(scene_, sweep_);
     } catch (const InputError& error) {
@@ -45,6 +45,8 @@ class MpmChart {
     folder.remove_old_outputs();
     folder.write_file("input.toml", resolved_input(scene_, origin_line(input_.name(), options_)) +
                                         chart_text(sweep_));
+    if (!options_.quiet && !options_.json)
+      for (const std::string& note : scene_.notes) fmt::print(stderr, "warning: {}\n", note);
     const Usage before = usage();
     std::string status = "done";
     std::size_t count = 0;
