@@ -11,9 +11,11 @@ struct KindInfo {
   FileKind kind;
   std::string_view table, what, verb;
 };
-constexpr std::array kinds{KindInfo{FileKind::scene, "scene", "a scene", "run"},
-                           KindInfo{FileKind::point_test, "test", "a point test", "point"},
-                           KindInfo{FileKind::fit, "fit", "a fit", "fit"}};
+constexpr std::array kinds{
+    KindInfo{FileKind::scene, "scene", "a scene", "run"},
+    KindInfo{FileKind::point_test, "test", "a point test", "point"},
+    KindInfo{FileKind::fit, "fit", "a fit", "fit"},
+    KindInfo{FileKind::stability, "stability", "a set of stability maps", "stability"}};
 
 const KindInfo& info_of(FileKind kind) {
   for (const KindInfo& info : kinds)
@@ -44,7 +46,9 @@ FileKind kind_of(const InputFile& file) {
       if (const std::string near = closest(key.str(), names); !near.empty())
         refuse(file, key.str(),
                fmt::format("unknown table '{}'; did you mean '{}'?", key.str(), near));
-    refuse(file, "", "a file needs [scene] (a scene), [test] (a point test) or [fit] (a fit)");
+    refuse(file, "",
+           "a file needs [scene] (a scene), [test] (a point test), [fit] (a fit) or [stability] "
+           "(stability maps)");
   }
   return found->kind;
 }

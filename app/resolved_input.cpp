@@ -63,25 +63,6 @@ std::string line(std::string_view key, std::string_view value, std::string_view 
   return comment.empty() ? text + "\n" : fmt::format("{:<27} # {}\n", text, comment);
 }
 
-std::string law_table(const LawSpec& spec) {
-  const LawInfo& info = find_law(spec);
-  const std::vector<double> theta = checked_parameters(spec);
-  std::string out = "\n[body.law]\n" + line("name", toml_string(spec.name), info.doc);
-  if (!info.option_key.empty()) {
-    const bool boolean = info.option == "true" || info.option == "false";
-    out += line(info.option_key, boolean ? std::string(info.option) : toml_string(info.option));
-  }
-  for (std::size_t i = 0; i < theta.size(); ++i) {
-    const ParamInfo& parameter = info.parameters[i];
-    if (std::isnan(theta[i])) continue;
-    const bool derived =
-        parameter.need == Need::optional && !spec.values.contains(std::string(parameter.name));
-    out += line(fmt::format("{}{}", derived ? "# " : "", parameter.name), number(theta[i]),
-                fmt::format("{}{}", derived ? "derived: " : "", unit_and_doc(parameter)));
-  }
-  return out;
-}
-
 std::string shape_lines(const mpm::Body& body) {
   if (!body.disc)
     return line("shape", toml_string("box")) + line("origin", pair(body.origin), "m") +
@@ -130,6 +111,25 @@ void flatten(const toml::node& node, const std::string& path,
 
 }  // namespace
 
+std::string law_table(const LawSpec& spec, std::string_view table) {
+  const LawInfo& info = find_law(spec);
+  const std::vector<double> theta = checked_parameters(spec);
+  std::string out = fmt::format("\n[{}]\n", table) + line("name", toml_string(spec.name), info.doc);
+  if (!info.option_key.empty()) {
+    const bool boolean = info.option == "true" || info.option == "false";
+    out += line(info.option_key, boolean ? std::string(info.option) : toml_string(info.option));
+  }
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const ParamInfo& parameter = info.parameters[i];
+    if (std::isnan(theta[i])) continue;
+    const bool derived =
+        parameter.need == Need::optional && !spec.values.contains(std::string(parameter.name));
+    out += line(fmt::format("{}{}", derived ? "# " : "", parameter.name), number(theta[i]),
+                fmt::format("{}{}", derived ? "derived: " : "", unit_and_doc(parameter)));
+  }
+  return out;
+}
+
 std::string resolved_input(const SceneFile& file, const std::string& origin) {
   const mpm::Scene& scene = file.scene;
   std::string out = fmt::format(
@@ -145,7 +145,7 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
   for (const mpm::Body& body : scene.bodies) {
     out += "\n[[body]]\n" + line("name", toml_string(body.name)) + shape_lines(body) +
            line("velocity", pair(body.velocity), "m/s") + line("spin", number(body.spin), "rad/s");
-    out += initial_table(body) + law_table(body.law);
+    out += initial_table(body) + law_table(body.law, "body.law");
   }
   out += "\n[grid]\n" + line("h", number(scene.h), "m") +
          line("points_per_cell", std::to_string(scene.points_per_cell)) +

@@ -13,6 +13,9 @@ namespace repose::app {
 /// follow when the file is edited. origin: one line telling where it comes from.
 std::string resolved_input(const SceneFile& file, const std::string& origin);
 
+/// A law as a table of that name ("law", "body.law"), every parameter with unit and meaning.
+std::string law_table(const LawSpec& spec, std::string_view table);
+
 /// What differs between two inputs, one line each: "grid.h: 0.00625 there, 0.0125 here". Numbers
 /// are compared by value. Empty if nothing does.
 std::vector<std::string> differences(const toml::table& there, const toml::table& here);

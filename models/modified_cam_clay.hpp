@@ -73,9 +73,10 @@ struct ModifiedCamClay {
   /// Γ ↔ N: N = Γ 2^{λ−κ} (ln v – ln p) or Γ + (λ−κ) ln 2 (v – ln p)                    MCC-5
   static void complete(std::vector<double>& t);
 
+  /// `evaluations`, if given, is raised by the number of evaluations that its return takes.
   template <class T, int N>
   static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& stress,
-                        State<T>& state_now);
+                        State<T>& state_now, int* evaluations = nullptr);
 
   /// Elastic: MCC-4; plastic: consistency of MCC-1 with MCC-2 and MCC-3.
   template <class T, int N>

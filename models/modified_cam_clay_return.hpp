@@ -103,10 +103,11 @@ struct CamClayReturn {
 /// bracket or is not clearly shorter than the one before gives way to bisection. Returns the
 /// equation at the root, whose w is the root. `first` is the equation at w = 1, `upper` the end of
 /// the bracket; `active` marks the lanes to solve, the values of the others mean nothing. Lanes
-/// that have not met the tolerance stay marked in `active`.
+/// that have not met the tolerance stay marked in `active`. `evaluations`, if given, counts those
+/// of H.
 template <class R, class T>
 typename R::Point bracketed_root(const R& eq, const typename R::Point& first, const T& upper,
-                                 Mask<T>& active) {
+                                 Mask<T>& active, int* evaluations = nullptr) {
   constexpr int max_steps = 200;  // every step halves the bracket or shortens the move to 0.7
   const T eps(4.0 * std::numeric_limits<double>::epsilon());
   T low(0.0);
@@ -120,6 +121,7 @@ typename R::Point bracketed_root(const R& eq, const typename R::Point& first, co
   T last_move = upper;
   for (int step = 0;; ++step) {
     const typename R::Point here = eq.at(w);
+    if (evaluations != nullptr) ++*evaluations;
     const auto above = here.H >= T(0.0);
     high = select(above, w, high);
     low = select(above, low, w);
@@ -155,7 +157,7 @@ typename R::Point bracketed_root(const R& eq, const typename R::Point& first, co
 template <Compression compression>
 template <class T, int N>
 Mask<T> ModifiedCamClay<compression>::update(const Params<T>& P, const Increment<T, N>& inc,
-                                             Sym<T, N>& stress, State<T>& at) {
+                                             Sym<T, N>& stress, State<T>& at, int* evaluations) {
   using std::log;
   const T one(1.0);
   const T zero(0.0);
@@ -249,14 +251,15 @@ Mask<T> ModifiedCamClay<compression>::update(const Params<T>& P, const Increment
       if constexpr (ScalarTraits<T>::is_dual) {
         // solve on values, then differentiate the converged root by one Newton step in T
         const auto plain = eq.values();
-        const auto root = bracketed_root(plain, plain.at(1.0), plain.bracket_end(), active);
+        const auto root =
+            bracketed_root(plain, plain.at(1.0), plain.bracket_end(), active, evaluations);
         const T residual = eq.at(T(root.w)).H;
         end = eq.at(T(root.w) - (residual - T(value(residual))) / T(root.slope));
       } else {
         const T g = one / growth.whole;
         const T h = T(0.5) * p_cn / p_n * g;
         const auto trial = eq.point(one, x_trial, {g, g - one}, L, {h, h - one});
-        end = bracketed_root(eq, trial, eq.bracket_end(), active);
+        end = bracketed_root(eq, trial, eq.bracket_end(), active, evaluations);
       }
       failed = failed || active;  // a root exists; only an overflow beyond any stress ends here
       const T end_growth = one / end.g;

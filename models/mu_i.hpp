@@ -3,6 +3,7 @@
 /// Weakly compressible μ(I) rheology (physics.md, MUI), in two forms of the same flow curve:
 ///   MuIElastoviscoplastic  exact arrest, no regularisation (after Dunatunga & Kamrin 2015)
 ///   MuIRegularised         a viscosity, finite at rest through r (the published formulation)
+/// mu_i_barker_gray.hpp has a third form, with another curve.
 /// I = γ̇ d √(ρ_p/p), μ(I) = μ_0 + (μ_d − μ_0)/(I_0/I + 1), γ̇ = √(2D′:D′), τ = μ(I)p.
 
 #include "models/law.hpp"
@@ -46,14 +47,11 @@ T friction(const P& par, const T& I) {
   return par.mu_0 + (par.mu_d - par.mu_0) * I / (par.I_0 + I);
 }
 
-/// Barker et al. (2015): the incompressible equations are ill-posed where this is > 0 (MUI-6),
-/// C = 4(χ² − χ) + μ²(1 − χ/2)², χ = Iμ′(I)/μ(I).
+/// I of MUI-2.
 template <class P, class T>
-T ill_posedness(const P& par, const T& I) {
-  const T mu = friction(par, I);
-  const T slope = (par.mu_d - par.mu_0) * par.I_0 / square(T(par.I_0 + I));  // μ′(I)
-  const T chi = I * slope / mu;
-  return T(4.0) * (chi * chi - chi) + square(T(mu * (T(1.0) - T(0.5) * chi)));
+T inertial_number(const P& par, const T& p, const T& gamma_dot) {
+  using std::sqrt;
+  return gamma_dot * par.d * sqrt(T(par.rho_p / p));
 }
 
 /// ρ ∫ p/ρ² dρ from ρ0 = K(r ln r − r + 1), r = ρ/ρ0
@@ -195,6 +193,12 @@ struct MuIElastoviscoplastic {
     stress_rate = stress_rate - select(sheared, T(P.G * gamma_dot_p / divisor), T(0.0)) * s;
   }
 
+  /// τ of steady shear under p > 0: what it flows at, however it got there              MUI-5
+  template <class T>
+  static T steady_shear_stress(const Params<T>& P, const T& p, const T& gamma_dot) {
+    return mu_i::friction(P, mu_i::inertial_number(P, p, gamma_dot)) * p;
+  }
+
   /// τ − μ_0 p
   template <class T, int N>
   static T yield(const Params<T>& P, const Sym<T, N>& stress, const State<T>&, const T&,
@@ -256,25 +260,101 @@ struct MuIElastoviscoplastic {
   }
 };
 
-struct MuIRegularised {
+namespace mu_i {
+
+inline constexpr ParamInfo r{"r",  "r",      "1/s",     "regularising shear rate", Need::defaulted,
+                             1e-4, positive, Scale::log};
+
+/// What the forms share whose shear stress is a viscosity's, s = 2ηD′: all but η(p, γ̇) itself,
+/// which is Law::effective_viscosity().
+template <class Law>
+struct Viscous {
+  template <class T>
+  using State = std::array<T, 0>;
+  static constexpr bool has_stress_memory = false;
+  static constexpr bool iterates = false;
+  static constexpr std::array<StateField, 0> state{};
+
+  /// τ of steady shear under p > 0.
+  template <class Par, class T>
+  static T steady_shear_stress(const Par& P, const T& p, const T& gamma_dot) {
+    return Law::effective_viscosity(P, p, gamma_dot) * gamma_dot;
+  }
+
+  template <class Par, class T, int N>
+  static Mask<T> update(const Par& P, const Increment<T, N>& inc, Sym<T, N>& stress, State<T>&) {
+    const T p = mu_i::pressure_of(P, inc.density);
+    // a step of no duration has no viscous stress; a NaN stays one
+    const T inv_dt = select(inc.dt > T(0.0), T(T(1.0) / inc.dt), T(T(0.0) * inc.dt));
+    const Sym<T, N> D_dev = inv_dt * deviator(inc.strain);
+    const T eta = Law::effective_viscosity(P, p, T(T(2.0) * shear_norm(D_dev)));
+    const Sym<T, N> next = (T(2.0) * eta) * D_dev - Sym<T, N>::isotropic(p);
+    const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
+    for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
+    return failed;
+  }
+
+  /// Only the pressure has a rate; the viscous stress follows D at once.
+  template <class Par, class T, int N>
+  static void rate(const Par& P, const Sym<T, N>&, const State<T>&, const T& density,
+                   const Sym<T, N>& D, Branch, Sym<T, N>& stress_rate, State<T>&) {
+    const T K_now = select(density < P.rho_0, T(0.0), T(P.K * density / P.rho_0));
+    stress_rate = Sym<T, N>::isotropic(K_now * trace(D));
+  }
+
+  template <class Par, class T, int N>
+  static T yield(const Par&, const Sym<T, N>&, const State<T>&, const T&, const Sym<T, N>&) {
+    return T(-std::numeric_limits<double>::infinity());
+  }
+
+  template <class Par, class T, int N>
+  static T modulus(const Par& P, const Sym<T, N>&, const State<T>&, const T& density) {
+    return P.K * density / P.rho_0;
+  }
+
+  template <class Par, class T, int N>
+  static T viscosity(const Par& P, const Sym<T, N>&, const T& density, const Sym<T, N>& D) {
+    return Law::effective_viscosity(P, mu_i::pressure_of(P, density), mu_i::shear_rate(D));
+  }
+
+  template <class Par, class T, int N>
+  static T stored_energy(const Par& P, const Sym<T, N>&, const State<T>&, const T& density) {
+    return mu_i::compression_energy(P, density);
+  }
+
+  template <class Par, class T, int N>
+  static T elastic_volume_strain(const Par& P, const Sym<T, N>& stress, const State<T>&, const T&) {
+    return mu_i::elastic_volume_strain(P, pressure(stress));
+  }
+
+  template <class Par>
+  static double density_at(const Par& P, double p, double /*ocr*/) {
+    return mu_i::density_at(P, p);
+  }
+
+  template <class Par>
+  static InitialPoint initial(const Par& P, const InitialConditions& given) {
+    const InitialPoint point = mu_i::rest_state(P, given);
+    if (mises(point.stress) > 1e-12 * pressure(point.stress))
+      throw InputError(given.sigma ? "sigma" : "K0",
+                       "the " + std::string(Law::option) +
+                           " form carries no shear stress at rest: the initial stress must "
+                           "be isotropic (form = \"elastoviscoplastic\" takes any)");
+    return point;
+  }
+};
+
+}  // namespace mu_i
+
+struct MuIRegularised : mu_i::Viscous<MuIRegularised> {
   static constexpr std::string_view name = "mu_i";
   static constexpr std::string_view option_key = "form";
   static constexpr std::string_view option = "regularised";
   static constexpr std::string_view doc =
       "weakly compressible mu(I) as a viscosity made finite by r: creeps, needs tiny steps";
-  static constexpr bool has_stress_memory = false;
-  static constexpr bool iterates = false;
 
   static constexpr std::array<ParamInfo, 8> parameters{
-      {mu_i::mu_0,
-       mu_i::mu_d,
-       mu_i::I_0,
-       mu_i::d,
-       mu_i::rho_p,
-       mu_i::rho_0,
-       mu_i::K,
-       {"r", "r", "1/s", "regularising shear rate", Need::defaulted, 1e-4, positive, Scale::log}}};
-  static constexpr std::array<StateField, 0> state{};
+      {mu_i::mu_0, mu_i::mu_d, mu_i::I_0, mu_i::d, mu_i::rho_p, mu_i::rho_0, mu_i::K, mu_i::r}};
 
   template <class T>
   struct Params {
@@ -283,8 +363,6 @@ struct MuIRegularised {
       return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7]};
     }
   };
-  template <class T>
-  using State = std::array<T, 0>;
 
   static void complete(std::vector<double>& t) { mu_i::check(t[0], t[1]); }
 
@@ -297,68 +375,6 @@ struct MuIRegularised {
         P.mu_0 * loaded / sqrt(T(gamma_dot * gamma_dot + P.r * P.r)) +
         (P.mu_d - P.mu_0) * loaded * P.d / (P.I_0 * sqrt(T(loaded / P.rho_p)) + P.d * gamma_dot);
     return select(p > T(0.0), eta, T(T(0.0) * p));
-  }
-
-  template <class T, int N>
-  static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& stress,
-                        State<T>&) {
-    const T p = mu_i::pressure_of(P, inc.density);
-    // a step of no duration has no viscous stress; a NaN stays one
-    const T inv_dt = select(inc.dt > T(0.0), T(T(1.0) / inc.dt), T(T(0.0) * inc.dt));
-    const Sym<T, N> D_dev = inv_dt * deviator(inc.strain);
-    const T eta = effective_viscosity(P, p, T(T(2.0) * shear_norm(D_dev)));
-    const Sym<T, N> next = (T(2.0) * eta) * D_dev - Sym<T, N>::isotropic(p);
-    const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
-    for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
-    return failed;
-  }
-
-  /// Only the pressure has a rate; the viscous stress follows D at once.
-  template <class T, int N>
-  static void rate(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density,
-                   const Sym<T, N>& D, Branch, Sym<T, N>& stress_rate, State<T>&) {
-    const T K_now = select(density < P.rho_0, T(0.0), T(P.K * density / P.rho_0));
-    stress_rate = Sym<T, N>::isotropic(K_now * trace(D));
-  }
-
-  template <class T, int N>
-  static T yield(const Params<T>&, const Sym<T, N>&, const State<T>&, const T&, const Sym<T, N>&) {
-    return T(-std::numeric_limits<double>::infinity());
-  }
-
-  template <class T, int N>
-  static T modulus(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density) {
-    return P.K * density / P.rho_0;
-  }
-
-  template <class T, int N>
-  static T viscosity(const Params<T>& P, const Sym<T, N>&, const T& density, const Sym<T, N>& D) {
-    return effective_viscosity(P, mu_i::pressure_of(P, density), mu_i::shear_rate(D));
-  }
-
-  template <class T, int N>
-  static T stored_energy(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density) {
-    return mu_i::compression_energy(P, density);
-  }
-
-  template <class T, int N>
-  static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
-                                 const T&) {
-    return mu_i::elastic_volume_strain(P, pressure(stress));
-  }
-
-  static double density_at(const Params<double>& P, double p, double /*ocr*/) {
-    return mu_i::density_at(P, p);
-  }
-
-  static InitialPoint initial(const Params<double>& P, const InitialConditions& given) {
-    const InitialPoint point = mu_i::rest_state(P, given);
-    if (mises(point.stress) > 1e-12 * pressure(point.stress))
-      throw InputError(
-          given.sigma ? "sigma" : "K0",
-          "the regularised form carries no shear stress at rest: the initial stress must "
-          "be isotropic (form = \"elastoviscoplastic\" takes any)");
-    return point;
   }
 };
 

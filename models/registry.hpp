@@ -7,6 +7,7 @@
 #include "models/law_material.hpp"
 #include "models/modified_cam_clay.hpp"
 #include "models/mu_i.hpp"
+#include "models/mu_i_barker_gray.hpp"
 #include "models/neo_hookean.hpp"
 #include "models/newtonian.hpp"
 
@@ -15,7 +16,7 @@ namespace repose {
 /// The first entry of a name is its default form where defaults exist (default_option()).
 using AllLaws =
     std::tuple<ModifiedCamClay<Compression::ln_v_ln_p>, ModifiedCamClay<Compression::v_ln_p>,
-               MuIElastoviscoplastic, MuIRegularised, Newtonian<Tension::cut_off>,
+               MuIElastoviscoplastic, MuIRegularised, MuIBarkerGray, Newtonian<Tension::cut_off>,
                Newtonian<Tension::carried>, NeoHookean>;
 
 /// A law as an input file writes it.

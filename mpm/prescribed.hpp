@@ -1,11 +1,17 @@
 #pragma once
 /// \file
 /// What a program may prescribe beyond a scene: initial velocities and a body acceleration as
-/// functions of the place that a point had at the start, for problems with manufactured solutions.
+/// functions of the place that a point had at the start, for problems with manufactured solutions,
+/// and a law of its own.
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <span>
+
+namespace repose {
+class Material;
+}
 
 namespace repose::mpm {
 
@@ -15,7 +21,7 @@ struct PointMotion {
   std::array<double, 4> gradient{};  ///< ∂v_x/∂x, ∂v_x/∂y, ∂v_y/∂x, ∂v_y/∂y [1/s]
 };
 
-/// Either function may be empty. Neither is part of a checkpoint: a program that resumes a run
+/// Each may be empty. None is part of a checkpoint: a program that resumes a run
 /// gives them again.
 struct Prescribed {
   /// The motion of the point filled at (X, Y) [m], instead of its body's velocity and spin.
@@ -26,6 +32,9 @@ struct Prescribed {
   std::function<void(double t, std::span<const double> X, std::span<const double> Y,
                      std::span<double> ax, std::span<double> ay)>
       acceleration;
+  /// Takes the place of every body's law after it has set up the points, whose state it must share:
+  /// for a law that is in no scene file, such as one that shows how another fails.
+  std::shared_ptr<const Material> material;
 };
 
 }  // namespace repose::mpm

@@ -55,6 +55,7 @@ Simulation::Impl::Impl(const Scene& given, const Prescribed& by_program, int thr
     initial_height = std::max(initial_height, body.origin[1] + body.size[1]);
   }
   for (PointSet& points : bodies) {
+    if (prescribed.material) points.material = prescribed.material;
     if (prescribed.start) set_motion(points, prescribed.start);
     if (!prescribed.acceleration) continue;
     start_x.insert(start_x.end(), points.field[X].begin(), points.field[X].end());
@@ -316,6 +317,10 @@ Simulation::Snapshot Simulation::snapshot() const {
     shot.density.push_back(at(RHO));
     shot.pressure_Pa.push_back(pressure(stress));
     shot.mises_Pa.push_back(mises(stress));
+    Sym<double, 4> D;
+    D.c = {at(LXX), at(LYY), 0.0, 0.5 * (at(LXY) + at(LYX))};
+    shot.shear_rate.push_back(2.0 * shear_norm(deviator(D)));
+    shot.mass.push_back(at(MASS));
     shot.sxx.push_back(at(SXX));
     shot.syy.push_back(at(SYY));
     shot.szz.push_back(at(SZZ));

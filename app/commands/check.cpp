@@ -7,6 +7,7 @@
 #include "app/read_fit.hpp"
 #include "app/read_point_test.hpp"
 #include "app/read_scene.hpp"
+#include "app/stability/read_stability.hpp"
 #include "mpm/simulation.hpp"
 
 namespace repose::app {
@@ -98,6 +99,16 @@ ExitCode check_fit(const std::string& path, const CommonOptions& options) {
   return ExitCode::done;
 }
 
+ExitCode check_stability(InputFile& input, const CommonOptions& options) {
+  const StabilityInput file = read_stability(input);
+  std::vector<std::string_view> parts;
+  for (const StabilityPart part : file.parts)
+    parts.push_back(stability_names[static_cast<std::size_t>(part)]);
+  if (!options.quiet)
+    fmt::print("{}: sound stability maps\n  parts  {}\n", input.name(), fmt::join(parts, ", "));
+  return ExitCode::done;
+}
+
 ExitCode check_file(const std::string& path, const CommonOptions& options) {
   InputFile input = InputFile::read(path, options.sets);
   switch (kind_of(input)) {
@@ -107,6 +118,8 @@ ExitCode check_file(const std::string& path, const CommonOptions& options) {
       return check_point_test(input, options);
     case FileKind::fit:
       return check_fit(path, options);
+    case FileKind::stability:
+      return check_stability(input, options);
   }
   return ExitCode::bad_input;
 }

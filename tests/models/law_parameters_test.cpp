@@ -199,7 +199,7 @@ TEST(CamClayParameters, GammaAndNFollowFromEachOther) {
 }
 
 TEST(MuIParameters, FrictionDoesNotFallWithTheInertialNumber) {
-  for (const char* form : {"elastoviscoplastic", "regularised"}) {
+  for (const char* form : {"elastoviscoplastic", "regularised", "barker_gray"}) {
     LawSpec spec{"mu_i", {{"form", form}}, {}};
     spec.values = {{"mu_0", 0.4},     {"mu_d", 0.3},     {"I_0", 0.3}, {"d", 1e-3},
                    {"rho_p", 2500.0}, {"rho_0", 1500.0}, {"K", 1e5}};
@@ -226,8 +226,8 @@ TEST(LawOptions, UnknownMissingAndForeign) {
   EXPECT_EQ(refusal_of({"mu_i", {{"form", "regularized"}}, column}),
             (std::pair<std::string, std::string>{
                 "form",
-                "form = \"regularized\" is not one of \"elastoviscoplastic\", \"regularised\"; did "
-                "you mean \"regularised\"?"}));
+                "form = \"regularized\" is not one of \"elastoviscoplastic\", \"regularised\", "
+                "\"barker_gray\"; did you mean \"regularised\"?"}));
   EXPECT_EQ(refusal_of({"modified_cam_clay", {}, {}}),
             (std::pair<std::string, std::string>{
                 "compression",

@@ -1,0 +1,47 @@
+#include "app/stability/part.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/plot/gnuplot.hpp"
+#include "app/read_scene.hpp"
+#include "embedded_scene.hpp"
+
+namespace repose::app {
+
+void PartOutput::table(const std::string& name, const std::string& csv) {
+  folder_->write_file(name, csv);
+  files_.push_back(name);
+}
+
+void PartOutput::picture(const std::string& name, const Figure& figure) {
+  try {
+    figure.render_svg(folder_->file(name));
+    files_.push_back(name);
+  } catch (const PlotError& error) {
+    fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+  } catch (const std::logic_error& error) {  // nothing to draw
+    fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+  }
+}
+
+void PartOutput::tell(const std::string& line) const {
+  if (quiet_) return;
+  fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+std::vector<double> decades(double low, double high, int n) {
+  std::vector<double> values;
+  for (int i = 0; i < n; ++i) values.push_back(low * std::pow(high / low, i / (n - 1.0)));
+  return values;
+}
+
+mpm::Scene paper_scene(std::string_view name, const std::vector<std::string>& sets) {
+  InputFile file = InputFile::parse(name == "flat_mcc" ? flat_mcc_scene : flat_mu_i_scene,
+                                    std::string(name) + ".toml", sets);
+  return read_scene(file).scene;
+}
+
+}  // namespace repose::app
