@@ -22,11 +22,33 @@ namespace {
 namespace fs = std::filesystem;
 
 // summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 19> outputs{
-    "summary.json", "checkpoint.h5", "series.csv", "profile.csv",   "curve.csv",
-    "final.svg",    "curve.svg",     "fit.json",   "fitted.toml",   "fit.svg",
-    "chart.csv",    "chart.svg",     "table.csv",  "error_map.csv", "error_map.svg",
-    "history.csv",  "history.svg",   "cost.svg",   "chart.json"};
+constexpr std::array<std::string_view, 27> outputs{"summary.json",
+                                                   "checkpoint.h5",
+                                                   "series.csv",
+                                                   "profile.csv",
+                                                   "curve.csv",
+                                                   "final.svg",
+                                                   "curve.svg",
+                                                   "fit.json",
+                                                   "fitted.toml",
+                                                   "fit.svg",
+                                                   "chart.csv",
+                                                   "chart.svg",
+                                                   "table.csv",
+                                                   "error_map.csv",
+                                                   "error_map.svg",
+                                                   "history.csv",
+                                                   "history.svg",
+                                                   "cost.svg",
+                                                   "chart.json",
+                                                   "errors.csv",
+                                                   "work_precision.svg",
+                                                   "reference_profile.csv",
+                                                   "reference_kinetic.csv",
+                                                   "accuracy.csv",
+                                                   "accuracy.svg",
+                                                   "estimate.csv",
+                                                   "advised.toml"};
 
 /// NAME_00012.hdf or NAME.hdf.series, or a temporary of one of them.
 bool is_frame_file(std::string name) {
