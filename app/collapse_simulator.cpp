@@ -18,11 +18,12 @@ namespace {
 using calibration::Response;
 using Eigen::Index;
 
-constexpr std::array<std::string_view, 5> series_channels{"front_m", "front_max_m", "height_m",
-                                                          "kinetic_J_per_m", "potential_J_per_m"};
+constexpr std::array<std::string_view, 6> series_channels{
+    "front_m", "front_99_m", "front_max_m", "height_m", "kinetic_J_per_m", "potential_J_per_m"};
 
 double read(const mpm::SeriesRow& row, std::string_view channel) {
   if (channel == "front_m") return row.front_m;
+  if (channel == "front_99_m") return row.front_99_m;
   if (channel == "front_max_m") return row.front_max_m;
   if (channel == "height_m") return row.height_m;
   if (channel == "kinetic_J_per_m") return row.kinetic_J_per_m;

@@ -184,8 +184,9 @@ std::optional<SweepChange> change_between(const SweepRun& run, const SweepRun& r
   const double front = reference.figure("front_m"), height = reference.figure("height_m");
   if (!(front > 0.0) || !(height > 0.0)) return {};
   const double H_0 = initial_height(run.scene());
-  SweepChange change{run.figure("front_m") / front - 1.0, run.figure("height_m") / height - 1.0,
-                     0.0, 0.0};
+  SweepChange change{run.figure("front_m") / front - 1.0,
+                     run.figure("front_99_m") / reference.figure("front_99_m") - 1.0,
+                     run.figure("height_m") / height - 1.0, 0.0, 0.0};
   for (std::size_t i = 0; i < run.depth_m.size(); ++i) {
     const double difference = std::abs(run.depth_m[i] - reference.depth_m[i]);
     // the end columns are half as wide (deposit.hpp)
@@ -208,6 +209,7 @@ std::optional<SweepChange> change_when_quartered(const SweepSeries& series) {
       if (!change) return {};
       if (!worst) worst = SweepChange{};
       worst->front = std::max(worst->front, std::abs(change->front));
+      worst->front_99 = std::max(worst->front_99, std::abs(change->front_99));
       worst->height = std::max(worst->height, std::abs(change->height));
       worst->profile_mean = std::max(worst->profile_mean, change->profile_mean);
       worst->profile_max = std::max(worst->profile_max, change->profile_max);

@@ -62,6 +62,7 @@ std::vector<SweepSeries> series_of(std::span<const SweepRun> runs);
 /// How far the end of one run is from that of another with the same cells.
 struct SweepChange {
   double front;         ///< front_m, relative
+  double front_99;      ///< front_99_m, relative
   double height;        ///< height_m, relative
   double profile_mean;  ///< ∫|Δdepth| dx over front × H_0
   double profile_max;   ///< max |Δdepth|/H_0

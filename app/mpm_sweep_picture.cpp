@@ -115,6 +115,7 @@ Figure step_figure(const std::vector<SweepSeries>& series, const std::string& na
     return std::nan("");
   };
   std::vector<Row> rows{{step, {"front at the end (m)"}, dt, named("front_m")},
+                        {step, {"front of 99 % of the mass (m)"}, dt, named("front_99_m")},
                         {step, {"height at the wall (m)"}, dt, named("height_m")},
                         {step,
                          {"kinetic energy at the end (J/m)", AxisScale::logarithmic},
@@ -155,8 +156,9 @@ Figure history_figure(const std::vector<SweepSeries>& series, const std::string&
   figure.columns = std::max<std::size_t>(1, columns.size());
   figure.panel_width_px = 380.0;
   figure.panel_height_px = 260.0;
-  const std::array<std::pair<const char*, Axis>, 2> rows{
+  const std::array<std::pair<const char*, Axis>, 3> rows{
       std::pair{"front_m", Axis{"front (m)"}},
+      {"front_99_m", Axis{"front of 99 % of the mass (m)"}},
       {"kinetic_J_per_m", Axis{"kinetic energy (J/m)", AxisScale::logarithmic}}};
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto& [key, axis] = rows[r];

@@ -11,11 +11,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Figures of summary.json that chart.csv passes on under their own names.
-constexpr std::array<std::string_view, 16> copied{"points",
+constexpr std::array<std::string_view, 17> copied{"points",
                                                   "steps",
                                                   "dt_min_s",
                                                   "dt_max_s",
                                                   "front_m",
+                                                  "front_99_m",
                                                   "front_max_m",
                                                   "height_m",
                                                   "kinetic_J_per_m",
@@ -44,6 +45,7 @@ Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr
 Json to_json(const std::optional<SweepChange>& change) {
   if (!change) return nullptr;
   return {{"front", change->front},
+          {"front_99", change->front_99},
           {"height", change->height},
           {"profile_mean", change->profile_mean},
           {"profile_max", change->profile_max}};
@@ -58,7 +60,8 @@ bool within(const SweepChange& change, double limit) {
 
 std::string sweep_csv(std::span<const SweepRun> runs) {
   std::string text = fmt::format(
-      "{},status,mean_dt_s,{},point_steps_per_cpu_s,bytes_per_point,front_change,height_change,"
+      "{},status,mean_dt_s,{},point_steps_per_cpu_s,bytes_per_point,front_change,front_99_change,"
+      "height_change,"
       "profile_change_mean,profile_change_max\n",
       key_columns, fmt::join(copied, ","));
   for (const SweepSeries& series : series_of(runs)) {
@@ -69,18 +72,25 @@ std::string sweep_csv(std::span<const SweepRun> runs) {
       for (const std::string_view key : copied) text += "," + cell(run->figure(key));
       text += "," + cell(run->point_steps_per_cpu_s()) + "," + cell(run->bytes_per_point());
       const auto change = finest == nullptr ? std::nullopt : change_between(*run, *finest);
-      text += change ? fmt::format(",{},{},{},{}\n", cell(change->front), cell(change->height),
-                                   cell(change->profile_mean), cell(change->profile_max))
-                     : ",,,,\n";
+      text += change ? fmt::format(",{},{},{},{},{}\n", cell(change->front), cell(change->front_99),
+                                   cell(change->height), cell(change->profile_mean),
+                                   cell(change->profile_max))
+                     : ",,,,,\n";
     }
   }
   return text;
 }
 
 std::string history_csv(std::span<const SweepRun> runs) {
-  constexpr std::array<std::string_view, 8> columns{
-      "time_s",          "front_m",          "front_max_m",           "height_m",
-      "kinetic_J_per_m", "angular_momentum", "transfer_loss_J_per_m", "energy_residual_J_per_m"};
+  constexpr std::array<std::string_view, 9> columns{"time_s",
+                                                    "front_m",
+                                                    "front_99_m",
+                                                    "front_max_m",
+                                                    "height_m",
+                                                    "kinetic_J_per_m",
+                                                    "angular_momentum",
+                                                    "transfer_loss_J_per_m",
+                                                    "energy_residual_J_per_m"};
   std::string text = fmt::format("{},{}\n", key_columns, fmt::join(columns, ","));
   for (const SweepRun& run : runs) {
     const auto time = run.series.find("time_s");
@@ -111,8 +121,8 @@ Json sweep_answer(const std::vector<SweepSeries>& series) {
     };
     if (!runs.empty()) {
       both("mean_dt_s", [](const SweepRun& r) { return r.mean_dt(); });
-      for (const char* key :
-           {"front_m", "height_m", "kinetic_J_per_m", "transfer_loss_J_per_m", "cpu_s"})
+      for (const char* key : {"front_m", "front_99_m", "height_m", "kinetic_J_per_m",
+                              "transfer_loss_J_per_m", "cpu_s"})
         both(key, [&](const SweepRun& r) { return r.figure(key); });
       line["change"] = to_json(change_between(*runs.front(), *runs.back()));
       const auto quartered = change_when_quartered(s);
@@ -132,9 +142,9 @@ std::string answer_text(const Json& answer) {
                        fmt::format(fmt::runtime(format), scale * number(line[key][1])));
   };
   std::string text =
-      fmt::format("{:<9} {:<9} {:>7}  {:<14} {:<16} {:<16} {:<18} {:<14} {}\n", "transfer",
-                  "kernel", "h (mm)", "step (µs)", "front (m)", "height (m)", "kinetic (J/m)",
-                  "CPU (s)", "step/4: front, height, profile");
+      fmt::format("{:<9} {:<9} {:>7}  {:<14} {:<16} {:<16} {:<16} {:<18} {:<14} {}\n", "transfer",
+                  "kernel", "h (mm)", "step (µs)", "front (m)", "99 % front (m)", "height (m)",
+                  "kinetic (J/m)", "CPU (s)", "step/4: front, 99 %, height, profile");
   for (const Json& line : answer) {
     text += fmt::format("{:<9} {:<9} {:>7.4g}  ", line["transfer"].get<std::string>(),
                         line["kernel"].get<std::string>(), 1e3 * line["h_m"].get<double>());
@@ -143,13 +153,15 @@ std::string answer_text(const Json& answer) {
       continue;
     }
     text += fmt::format(
-        "{:<14} {:<16} {:<16} {:<18} {:<14} ", pair(line, "mean_dt_s", 1e6, "{:.4g}"),
-        pair(line, "front_m", 1.0, "{:.4f}"), pair(line, "height_m", 1.0, "{:.4f}"),
-        pair(line, "kinetic_J_per_m", 1.0, "{:.2g}"), pair(line, "cpu_s", 1.0, "{:.2g}"));
+        "{:<14} {:<16} {:<16} {:<16} {:<18} {:<14} ", pair(line, "mean_dt_s", 1e6, "{:.4g}"),
+        pair(line, "front_m", 1.0, "{:.4f}"), pair(line, "front_99_m", 1.0, "{:.4f}"),
+        pair(line, "height_m", 1.0, "{:.4f}"), pair(line, "kinetic_J_per_m", 1.0, "{:.2g}"),
+        pair(line, "cpu_s", 1.0, "{:.2g}"));
     const Json& change = line["change_when_quartered"];
     if (change.is_object())
-      text += fmt::format("{:.2f}, {:.2f}, {:.2f} %{}", 100.0 * number(change["front"]),
-                          100.0 * number(change["height"]), 100.0 * number(change["profile_max"]),
+      text += fmt::format("{:.2f}, {:.2f}, {:.2f}, {:.2f} %{}", 100.0 * number(change["front"]),
+                          100.0 * number(change["front_99"]), 100.0 * number(change["height"]),
+                          100.0 * number(change["profile_max"]),
                           line["independent_of_step"] == true ? "  independent" : "");
     if (line["done"] != line["runs"])
       text +=

@@ -160,6 +160,9 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   if (tolerance && scene.viscosity != mpm::Viscosity::implicit_solve)
     table.report("viscosity_tolerance", "only step.viscosity = \"implicit\" has a tolerance");
   scene.viscosity_tolerance = tolerance.value_or(scene.viscosity_tolerance);
+  scene.sleep_speed = table.number({"sleep_speed", "m/s",
+                                    "blocks whose points are slower come to sleep, 0 for none",
+                                    not_negative, scene.sleep_speed});
   scene.courant =
       table.number({"courant", "-", "share of the stable step", mpm::courant_range, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});

@@ -158,9 +158,8 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
          (scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm
               ? line("order", std::to_string(scene.order), "1 is pic")
               : "") +
-         (scene.pressure_averaging > 0.0
-              ? line("pressure_averaging", number(scene.pressure_averaging), "per unit of shear")
-              : "") +
+         line("pressure_averaging", number(scene.pressure_averaging), "0 for none") +
+         line("sleep_speed", number(scene.sleep_speed), "m/s, 0: no block sleeps") +
          line("viscosity",
               toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
          (scene.viscosity == mpm::Viscosity::implicit_solve

@@ -60,7 +60,8 @@ std::vector<std::string> series_columns() {
           "wall_loss_J_per_m",
           "energy_residual_J_per_m",
           "outflow_kg_per_m",
-          "angular_momentum"};
+          "angular_momentum",
+          "front_99_m"};
 }
 
 std::vector<double> series_values(const mpm::SeriesRow& row) {
@@ -84,7 +85,8 @@ std::vector<double> series_values(const mpm::SeriesRow& row) {
           row.wall_loss_J_per_m,
           row.energy_residual_J_per_m,
           row.outflow_kg_per_m,
-          row.angular_momentum};
+          row.angular_momentum,
+          row.front_99_m};
 }
 
 Usage usage() {
@@ -163,6 +165,7 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["dt_min_s"] = counters.dt_min_s;
   s["dt_max_s"] = counters.dt_max_s;
   s["front_m"] = last.front_m;
+  s["front_99_m"] = last.front_99_m;
   s["front_max_m"] = last.front_max_m;
   s["height_m"] = last.height_m;
   s["density_min"] = last.density_min;
@@ -190,6 +193,7 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["peak_memory_MB"] = spent.peak_memory_MB;
   s["wall_corrections"] = counters.wall_corrections;
   s["sorts"] = counters.sorts;
+  if (simulation.scene().sleep_speed > 0.0) s["points_asleep"] = counters.points_asleep;
   if (simulation.scene().viscosity == mpm::Viscosity::implicit_solve) {
     s["newton_iterations"] = counters.newton_iterations;
     s["cg_iterations"] = counters.cg_iterations;

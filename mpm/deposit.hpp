@@ -13,11 +13,19 @@ struct Deposit {
   std::vector<double> depth;  ///< solid depth at x = i h [m]
 
   /// Spreads each point's mass over the two nearest columns (linear hat functions, so that the
-  /// depth is continuous in the points' positions); the end columns are half as wide.
-  Deposit(const std::vector<PointSet>& bodies, double column_spacing, int columns);
+  /// depth is continuous in the points' positions). The end columns are half as wide, or with
+  /// periodic edges one column, seen at both ends.
+  Deposit(const std::vector<PointSet>& bodies, double column_spacing, int columns, bool periodic);
 
   /// Largest x at which the piecewise linear depth reaches `threshold` [m]; 0 if it never does.
   double front(double threshold) const;
 };
+
+/// The x left of which lies `share` of the mass in a box of the given width [m]; 0 if it is empty.
+/// It is the mean x of the slice about that mark that weighs as much as the heaviest point: linear
+/// between the points of a body, and continuous in all positions, also where points of different
+/// masses pass each other. What has left the box counts at its edge, and whole turns through
+/// periodic edges do not count.
+double mass_front(const std::vector<PointSet>& bodies, double width, double share, bool periodic);
 
 }  // namespace repose::mpm

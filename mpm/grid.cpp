@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace repose::mpm {
 
@@ -36,7 +37,7 @@ void Grid::sort(std::vector<PointSet>& bodies) {
     }
   }
 
-  point_blocks.clear();
+  const std::vector<PointBlock> before = std::exchange(point_blocks, {});
   for (std::size_t block = 0; block < per_block.size(); ++block) {
     point_table_[block] = -1;
     if (per_block[block] == 0) continue;
@@ -45,6 +46,10 @@ void Grid::sort(std::vector<PointSet>& bodies) {
     fresh.bx = static_cast<int>(block % static_cast<std::size_t>(blocks_x_));
     fresh.by = static_cast<int>(block / static_cast<std::size_t>(blocks_x_));
     fresh.range.resize(bodies.size());
+  }
+  for (const PointBlock& old : before) {
+    const std::int32_t now = point_table_[table_index(old.bx, old.by)];
+    if (now >= 0) point_blocks[static_cast<std::size_t>(now)].rest = old.rest;
   }
 
   const auto cell_slot = [&](std::uint32_t key) {
@@ -128,6 +133,12 @@ void Grid::connect() {
   for (PointBlock& pb : point_blocks) pb.node_block = neighbours(pb.bx, pb.by, node_table_);
   for (NodeBlock& nb : node_blocks) nb.point_block = neighbours(nb.bx, nb.by, point_table_);
   tiles.resize(point_blocks.size());
+}
+
+const PointBlock* Grid::point_block(int bx, int by) const {
+  if (bx < 0 || bx >= blocks_x_ || by < 0 || by >= blocks_y_) return nullptr;
+  const std::int32_t index = point_table_[table_index(bx, by)];
+  return index < 0 ? nullptr : &point_blocks[static_cast<std::size_t>(index)];
 }
 
 Grid::NodeRef Grid::node(int i, int j) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mpm/points.hpp"
+#include "mpm/sleep.hpp"
 
 namespace repose::mpm {
 
@@ -31,8 +32,9 @@ constexpr int tile_rows = block_ny + 5;
 constexpr int tile_nodes = tile_stride * tile_rows;
 static_assert(tile_stride == tile_margin_x + block_nx + 4);
 
-/// What points hand to nodes; T_ELASTIC, the last, only where pressures are averaged.
-enum TileChannel : std::size_t { T_MASS, T_PX, T_PY, T_FX, T_FY, T_ELASTIC, tile_channels };
+/// What points hand to nodes. T_EXTRA, the last: elastic volume strain where pressures are
+/// averaged, else now and then the square of c + |v|.
+enum TileChannel : std::size_t { T_MASS, T_PX, T_PY, T_FX, T_FY, T_EXTRA, tile_channels };
 struct alignas(64) Tile : std::array<std::array<double, tile_nodes>, tile_channels> {};
 
 /// The points of one block, all bodies.
@@ -40,6 +42,13 @@ struct PointBlock {
   int bx = 0, by = 0;                        ///< block coordinates
   std::array<std::int32_t, 9> node_block{};  ///< the 3 × 3 node blocks around, row by row
   std::vector<Range> range;                  ///< per body
+  Rest rest;
+
+  std::size_t points() const {
+    std::size_t n = 0;
+    for (const Range& r : range) n += r.count;
+    return n;
+  }
 };
 
 /// The nodes of one block.
@@ -49,9 +58,13 @@ struct alignas(64) NodeBlock {
   std::array<double, block_nodes> mirrored_mass{};
   std::array<double, block_nodes> ux{}, uy{};  ///< velocity before forces (from the points) [m/s]
   std::array<double, block_nodes> vx{}, vy{};  ///< velocity after forces, then after walls [m/s]
-  /// Mass average of the points' elastic volume strain (pressure averaging only) [-]
-  std::array<double, block_nodes> elastic{};
+  /// Mass average of what the tiles' last channel carries, if it carries anything
+  std::array<double, block_nodes> extra{};
+  /// What points awake put there; only where blocks of both kinds are around [kg/m]
+  std::array<double, block_nodes> awake_mass{};
   int bx = 0, by = 0;
+  bool asleep = false;   ///< no point awake is near: nothing reads it and it holds zeros
+  bool borders = false;  ///< of the blocks of points around, some are awake and some asleep
   std::array<std::int32_t, 9> point_block{};  ///< the point blocks around; −1 where there is none
 };
 
@@ -78,7 +91,8 @@ class Grid {
   static int first_y(int by) { return (by - 1) * block_ny; }
 
   /// Sorts the points of all bodies by block and cell (stable, so the result depends on positions
-  /// and the former order only), and brings the blocks to life around them.
+  /// and the former order only), and brings the blocks to life around them. A block of points keeps
+  /// what it knows of its rest.
   void sort(std::vector<PointSet>& bodies);
 
   /// Takes over point blocks as sort() left them (from a checkpoint).
@@ -90,6 +104,9 @@ class Grid {
     std::size_t place;
   };
   NodeRef node(int i, int j);
+
+  /// The block of points at block coordinates; null where there is none.
+  const PointBlock* point_block(int bx, int by) const;
 
   std::vector<PointBlock> point_blocks;
   std::vector<NodeBlock> node_blocks;

@@ -36,7 +36,7 @@ void join(const Nodes& nodes) {
   nodes.each([&](const NodeBlock& b, std::size_t n) { mass += b.mass[n]; });
   if (mass == 0.0) return;
   for (const Field v :
-       {&NodeBlock::ux, &NodeBlock::uy, &NodeBlock::vx, &NodeBlock::vy, &NodeBlock::elastic}) {
+       {&NodeBlock::ux, &NodeBlock::uy, &NodeBlock::vx, &NodeBlock::vy, &NodeBlock::extra}) {
     double momentum = 0.0;
     nodes.each([&](const NodeBlock& b, std::size_t n) { momentum += b.mass[n] * (b.*v)[n]; });
     nodes.each([&](NodeBlock& b, std::size_t n) { (b.*v)[n] = momentum / mass; });

@@ -117,6 +117,10 @@ struct Scene {
   /// (root mean square by mass); implicit_viscosity.hpp says what it bounds.
   double viscosity_tolerance = 1e-3;
 
+  /// Points slower than this for √(h/g) are at rest, and blocks of them sleep (sleep.hpp) [m/s]; 0:
+  /// none does.
+  double sleep_speed = 0.0;
+
   double courant = 0.8;      ///< Δt = courant · h/(c + |v|), if dt is absent; see step_size.hpp
   std::optional<double> dt;  ///< fixed step [s]
 

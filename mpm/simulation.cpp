@@ -232,7 +232,8 @@ SeriesRow Simulation::Impl::diagnostics() {
         ++row.points_separated;
     }
   if (row.mass_kg_per_m == 0.0) row.density_min = 0.0;  // all has left through an open edge
-  const Deposit deposit(bodies, grid.h(), grid.nx());
+  const Deposit deposit(bodies, grid.h(), grid.nx(), walls.periodic());
+  row.front_99_m = mass_front(bodies, grid.h() * grid.nx(), 0.99, walls.periodic());
   row.front_m = deposit.front(0.02 * initial_height);
   row.height_m = deposit.depth.front();
   return row;
@@ -275,7 +276,7 @@ std::int64_t Simulation::live_cells() const {
 double Simulation::next_dt() const { return impl_->choose_step(HUGE_VAL); }
 
 Simulation::Profile Simulation::profile() const {
-  const Deposit deposit(impl_->bodies, impl_->grid.h(), impl_->grid.nx());
+  const Deposit deposit(impl_->bodies, impl_->grid.h(), impl_->grid.nx(), impl_->walls.periodic());
   Profile p;
   for (std::size_t i = 0; i < deposit.depth.size(); ++i) {
     p.x_m.push_back(static_cast<double>(i) * impl_->grid.h());
@@ -342,7 +343,7 @@ std::vector<std::string> Simulation::warnings() const {
   const Impl& s = *impl_;
   if (s.scene.dt) {
     const double courant =
-        std::max(s.fixed_step_excess, *s.scene.dt * s.signals.signal / s.grid.h());
+        std::max(s.fixed_step_excess, *s.scene.dt * s.seen().signal / s.grid.h());
     const double viscous = std::max(s.viscous_step_excess, *s.scene.dt * s.signals.viscous_rate);
     if (courant > 0.8)
       list.push_back(
@@ -370,8 +371,17 @@ Simulation::Counters Simulation::counters() const {
   for (const PointSet& points : s.bodies)
     bytes += static_cast<double>(points.slots() *
                                  (points.fields * sizeof(double) + sizeof(std::int64_t)));
-  return {s.steps > 0 ? s.dt_min : 0.0, s.dt_max,        s.wall_corrections, s.sorts,
-          s.newton_iterations,          s.cg_iterations, bytes / 1e6,        s.threads};
+  std::size_t asleep = 0;
+  for (const PointBlock& pb : s.grid.point_blocks) asleep += pb.rest.asleep ? pb.points() : 0;
+  return {.dt_min_s = s.steps > 0 ? s.dt_min : 0.0,
+          .dt_max_s = s.dt_max,
+          .wall_corrections = s.wall_corrections,
+          .sorts = s.sorts,
+          .points_asleep = static_cast<std::int64_t>(asleep),
+          .newton_iterations = s.newton_iterations,
+          .cg_iterations = s.cg_iterations,
+          .memory_MB = bytes / 1e6,
+          .threads = s.threads};
 }
 
 std::string Simulation::Impl::describe(const PointSet& points, std::size_t body,

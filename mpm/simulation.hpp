@@ -19,6 +19,7 @@ struct SeriesRow {
   std::int64_t step;
   double front_m;      ///< largest x with solid depth (column mass/ρ_0) >= 0.02 H_0
   double front_max_m;  ///< largest x of any point
+  double front_99_m;   ///< x left of which lies 99 % of the mass in the box
   double height_m;     ///< solid depth at the left wall
   double kinetic_J_per_m, potential_J_per_m, elastic_J_per_m;
   double dissipated_J_per_m;       ///< by the material: stress work not stored
@@ -100,6 +101,7 @@ class Simulation {
     double dt_min_s, dt_max_s;
     std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
     std::int64_t sorts;
+    std::int64_t points_asleep;                     ///< now (Scene::sleep_speed)
     std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
     double memory_MB;                               ///< of points and grid
     int threads;

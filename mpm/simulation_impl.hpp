@@ -26,10 +26,13 @@ class Simulation::Impl {
   double choose_step(double stop_at) const;
   void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
   void update_grid(double dt);      ///< sum tiles, accelerate nodes
+  void measure_signals();           ///< now and then: what the grid sees of them (step_size.hpp)
   void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
   void extend_velocity();           ///< XPIC, FMPM beyond first order (extended_pic.cpp)
   void grid_to_points(double dt);   ///< G2P, move, update stress, P2G of the next step
   void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
+  void mark_sleepers();             ///< tells the blocks of nodes which points around them sleep
+  void settle();                    ///< blocks at rest fall asleep, stirred ones wake (sleep.hpp)
 
   SeriesRow diagnostics();
   /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.
@@ -38,6 +41,10 @@ class Simulation::Impl {
   };
   Energies energies();
   Signals initial_signals() const;
+  /// The signals as the grid sees them.
+  Signals seen() const {
+    return {signals.speed, node_share * signals.signal, signals.viscous_rate};
+  }
 
   Scene scene;
   std::array<double, 2> gravity{};
@@ -66,7 +73,8 @@ class Simulation::Impl {
   double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
   double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
   double first_dt = 0.0;
-  Signals signals;
+  Signals signals;          ///< of the points awake
+  double node_share = 1.0;  ///< largest signal of a node over that of a point (step_size.hpp)
   Ledger ledger;
   double highest_energy = 0.0;  ///< what kinetic energy can never exceed [J/m]
   double initial_height = 0.0;  ///< H_0: top of the highest body [m]
@@ -80,10 +88,15 @@ class Simulation::Impl {
     std::int64_t corrections = 0;
     bool outflow = false;
     bool transferred = false;  ///< its tile holds the points as they are
+    bool stirred = false;      ///< asleep, and something happens at its border
     std::string failure;
   };
-  template <class Kernel, bool affine, bool averages>
+  /// What the tiles' last channel carries.
+  enum class Extra : std::uint8_t { nothing, elastic, signal };
+  template <class Kernel, bool affine, Extra extra>
   void transfer_to_tile(std::size_t block);
+  void transfer_to_tile(std::size_t block, Extra extra);
+  static void square_signals(PointSet& points, const Range& range, double* signal2);
   template <class Kernel>
   void prescribed_force_to_tile(const PointSet& points, const Range& range,
                                 std::array<int, 2> origin, Tile& tile) const;
@@ -101,9 +114,21 @@ class Simulation::Impl {
   /// How far a point may be from the cell it was sorted into [m].
   double reach() const { return 0.98 * grid.h(); }
   bool averages() const { return scene.pressure_averaging > 0.0; }
-  std::size_t channels() const { return averages() ? tile_channels : T_ELASTIC; }
+  /// Whether this step, or the n-th after it, measures node_share.
+  bool measures(int n = 0) const { return !averages() && (steps + n) % 4 == 0; }
+  Extra extra(int n) const {
+    return averages() ? Extra::elastic : measures(n) ? Extra::signal : Extra::nothing;
+  }
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
+  /// Whether blocks at rest fall asleep, and after how long [s].
+  bool sleeps() const;
+  double time_to_sleep() const;
+  void put_to_sleep(std::size_t block);
+  void wake(PointBlock& block);
+  void wake_the_crowded();  ///< sleepers into which points have come
+  void sum_awake_mass(NodeBlock& nb) const;
+  bool is_stirred(std::size_t block, double dt);
   void remove_outflow();
   double initial_power() const;
   /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].

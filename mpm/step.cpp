@@ -71,6 +71,7 @@ void Simulation::Impl::step(double stop_at) {
   if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
   const bool extends = retention(dt).extended;
   wall_effect_ = apply_walls(grid, walls, extends ? &mirrored_ : nullptr);
+  measure_signals();
   solve_viscosity(dt);
   if (extends) extend_velocity();
   tiles_time = time + dt >= stop_at - 1e-9 * dt ? stop_at : time + dt;
@@ -81,6 +82,7 @@ void Simulation::Impl::step(double stop_at) {
   time = tiles_time;
   ++steps;
   close_ledger();
+  settle();
 }
 
 void Simulation::Impl::sort_if_needed() {
@@ -92,6 +94,8 @@ void Simulation::Impl::sort_if_needed() {
   }
   remove_outflow();
   grid.sort(bodies);
+  wake_the_crowded();
+  mark_sleepers();
   tiles_are_current = false;
   drift = 0.0;
   must_sort = false;
@@ -99,7 +103,7 @@ void Simulation::Impl::sort_if_needed() {
 }
 
 double Simulation::Impl::choose_step(double stop_at) const {
-  const double dt = scene.dt ? *scene.dt : stable_step(signals, scene.courant, grid.h());
+  const double dt = scene.dt ? *scene.dt : stable_step(seen(), scene.courant, grid.h());
   // equal steps to the stop rather than a sliver at the end; 1e-9: a step that fits but for
   // round-off
   const double remaining = stop_at - time;
@@ -129,22 +133,33 @@ Retention Simulation::Impl::retention(double dt) const {
   return {true, keep, keep};
 }
 
-template <class Kernel, bool affine, bool averages>
+template <class Kernel, bool affine, Simulation::Impl::Extra extra>
 void Simulation::Impl::transfer_to_tile(std::size_t block) {
   const PointBlock& pb = grid.point_blocks[block];
   Tile& tile = grid.tiles[block];
-  for (std::size_t c = 0; c < channels(); ++c) tile[c].fill(0.0);
-  static thread_local AlignedVector<double> elastic;
+  constexpr bool has_extra = extra != Extra::nothing;
+  for (std::size_t c = 0; c < T_EXTRA + has_extra; ++c) tile[c].fill(0.0);
+  static thread_local AlignedVector<double> values;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Range& range = pb.range[b];
-    if constexpr (averages) {
-      elastic.resize(std::max(elastic.size(), padded(range.count)));
-      bodies[b].material->elastic_volume_strain(bodies[b].batch(range), elastic.data());
-    }
-    points_to_tile<Kernel, affine, averages>(bodies[b], range, grid.h(), tile_origin(pb),
-                                             elastic.data(), tile);
+    if constexpr (has_extra) values.resize(std::max(values.size(), padded(range.count)));
+    if constexpr (extra == Extra::elastic)
+      bodies[b].material->elastic_volume_strain(bodies[b].batch(range), values.data());
+    if constexpr (extra == Extra::signal) square_signals(bodies[b], range, values.data());
+    points_to_tile<Kernel, affine, has_extra>(bodies[b], range, grid.h(), tile_origin(pb),
+                                              values.data(), tile);
     if (prescribed.acceleration)
       prescribed_force_to_tile<Kernel>(bodies[b], range, tile_origin(pb), tile);
+  }
+}
+
+void Simulation::Impl::square_signals(PointSet& points, const Range& range, double* signal2) {
+  points.material->modulus(points.batch(range), signal2);
+  for (std::size_t k = 0; k < range.count; k += Pack::size) {
+    const auto at = [&](Field f) { return Pack::load_aligned(points[f] + range.begin + k); };
+    const Pack c = sqrt(Pack::load_aligned(signal2 + k) / at(RHO));
+    const Pack signal = c + sqrt(at(VX) * at(VX) + at(VY) * at(VY));
+    (signal * signal).store_aligned(signal2 + k);
   }
 }
 
@@ -168,20 +183,36 @@ void Simulation::Impl::prescribed_force_to_tile(const PointSet& points, const Ra
 
 void Simulation::Impl::points_to_grid() {
   tiles_time = time;
-  for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    choose(scene, retention(0.0).affine, averages(), [&]<class K>(K, auto affine, auto averages) {
-      transfer_to_tile<K, affine.value, averages.value>(k);
-    });
+  for_each_block(arena, grid.point_blocks.size(),
+                 [&](std::size_t k) { transfer_to_tile(k, extra(0)); });
+}
+
+void Simulation::Impl::transfer_to_tile(std::size_t block, Extra extra) {
+  choose(scene, retention(0.0).affine, averages(), [&]<class K>(K, auto affine, auto averages) {
+    if constexpr (averages.value)
+      transfer_to_tile<K, affine.value, Extra::elastic>(block);
+    else if (extra == Extra::signal)
+      transfer_to_tile<K, affine.value, Extra::signal>(block);
+    else
+      transfer_to_tile<K, affine.value, Extra::nothing>(block);
   });
 }
 
 void Simulation::Impl::update_grid(double dt) {
+  const Extra carries = extra(0);
   node_sums_.resize(grid.node_blocks.size());
   for_each_block(arena, grid.node_blocks.size(), [&](std::size_t k) {
     NodeBlock& nb = grid.node_blocks[k];
+    if (nb.asleep) {
+      for (auto* field : {&nb.mass, &nb.mirrored_mass, &nb.ux, &nb.uy, &nb.vx, &nb.vy, &nb.extra})
+        field->fill(0.0);
+      node_sums_[k] = {};
+      return;
+    }
+    if (nb.borders) sum_awake_mass(nb);
     alignas(64) NodeTotals<tile_channels> sum{};
-    add_tiles<tile_channels>(grid, nb, {T_MASS, T_PX, T_PY, T_FX, T_FY, T_ELASTIC}, sum,
-                             channels());
+    add_tiles<tile_channels>(grid, nb, {T_MASS, T_PX, T_PY, T_FX, T_FY, T_EXTRA}, sum,
+                             carries == Extra::nothing ? T_EXTRA : tile_channels);
     Pack before(0.0), after(0.0), impulse_work(0.0);
     const Pack zero(0.0), half(0.5), one(1.0), step(dt);
     for (std::size_t n = 0; n < block_nodes; n += Pack::size) {
@@ -204,7 +235,7 @@ void Simulation::Impl::update_grid(double dt) {
       uy.store_aligned(nb.uy.data() + n);
       wx.store_aligned(nb.vx.data() + n);
       wy.store_aligned(nb.vy.data() + n);
-      if (averages()) (at(T_ELASTIC) * inv_m).store_aligned(nb.elastic.data() + n);
+      if (carries != Extra::nothing) (at(T_EXTRA) * inv_m).store_aligned(nb.extra.data() + n);
       before = before + half * m * (ux * ux + uy * uy);
       after = after + half * m * (wx * wx + wy * wy);
       impulse_work = impulse_work + m * (kick_x * ux + kick_y * uy);
@@ -213,9 +244,18 @@ void Simulation::Impl::update_grid(double dt) {
   });
 }
 
+void Simulation::Impl::measure_signals() {
+  if (extra(0) != Extra::signal || signals.signal == 0.0) return;
+  double most = 0.0;
+  for (const NodeBlock& nb : grid.node_blocks)
+    for (const double signal2 : nb.extra) most = max_of(most, signal2);
+  node_share = std::min(1.0, std::sqrt(most) / signals.signal);
+}
+
 void Simulation::Impl::grid_to_points(double dt) {
   block_sums_.assign(grid.point_blocks.size(), BlockSums{});
   const Retention keep = retention(dt);
+  const Extra carries_next = extra(1);
   const auto advance = [&]<class Kernel>(Kernel, auto affine, auto averages, std::size_t k) {
     BlockSums& sums = block_sums_[k];
     if constexpr (Kernel::spline_gradient)  // of tpic, which keeps nothing
@@ -231,9 +271,20 @@ void Simulation::Impl::grid_to_points(double dt) {
     // While the points of the block are in the cache: their way to the grid of the next step. If
     // any of them has left the tile, all blocks are sorted first (sort_if_needed), and this waits.
     sums.transferred = drift + sums.signals.speed * dt < reach() && sums.failure.empty();
-    if (sums.transferred) transfer_to_tile<Kernel, affine.value, averages.value>(k);
+    if (!sums.transferred) return;
+    if constexpr (averages.value)
+      transfer_to_tile<Kernel, affine.value, Extra::elastic>(k);
+    else if (carries_next == Extra::signal)
+      transfer_to_tile<Kernel, affine.value, Extra::signal>(k);
+    else
+      transfer_to_tile<Kernel, affine.value, Extra::nothing>(k);
   };
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
+    if (grid.point_blocks[k].rest.asleep) {
+      block_sums_[k].transferred = true;
+      block_sums_[k].stirred = is_stirred(k, dt);
+      return;
+    }
     choose(scene, keep.affine, averages(),
            [&](auto kernel, auto affine, auto averages) { advance(kernel, affine, averages, k); });
   });
@@ -256,7 +307,7 @@ void Simulation::Impl::advance_block(std::size_t block, double dt, const Retenti
     fill(&VelocityTile::ux, &NodeBlock::ux);
     fill(&VelocityTile::uy, &NodeBlock::uy);
   }
-  if constexpr (averages) fill(&VelocityTile::elastic, &NodeBlock::elastic);
+  if constexpr (averages) fill(&VelocityTile::elastic, &NodeBlock::extra);
 
   static thread_local AlignedVector<double> scratch;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -488,12 +539,13 @@ void Simulation::Impl::close_ledger() {
   ledger.power = power;
   ledger.stress_work += work + viscous_effect_.half_jump_work;
   drift += now.speed * last_dt;
+  signals = now;
   if (scene.dt) {
-    fixed_step_excess = std::max(fixed_step_excess, last_dt * now.signal / grid.h());
+    fixed_step_excess = std::max(fixed_step_excess, last_dt * seen().signal / grid.h());
     viscous_step_excess = std::max(viscous_step_excess, last_dt * now.viscous_rate);
   }
-  signals = now;
-  for (const PointSet& points : bodies) point_steps += static_cast<std::int64_t>(points.count);
+  for (const PointBlock& pb : grid.point_blocks)
+    if (!pb.rest.asleep) point_steps += static_cast<std::int64_t>(pb.points());
 
   const char* cause = "the integration diverges (solver); try a smaller courant";
   if (scene.dt && fixed_step_excess > 0.8)
@@ -510,7 +562,7 @@ void Simulation::Impl::close_ledger() {
   // so fast that the step shrinks to nothing (not the last step before a stop, which may be as
   // short as it likes). Also catches NaN (the comparisons are false).
   const bool sound = std::isfinite(kinetic) && kinetic <= 2.0 * highest_energy &&
-                     (scene.dt || stable_step(now, scene.courant, grid.h()) >= 1e-9 * first_dt);
+                     (scene.dt || stable_step(seen(), scene.courant, grid.h()) >= 1e-9 * first_dt);
   must_sort = must_sort || failure != nullptr || !sound;  // drift may be NaN: look at every point
   if (failure != nullptr)
     throw NumericalFailure(
@@ -519,7 +571,7 @@ void Simulation::Impl::close_ledger() {
     throw NumericalFailure(fmt::format(
         "step {} at t = {:.6g} s: kinetic energy {:.4g} J/m against {:.4g} J/m available, dt "
         "{:.3g} s, Courant number {:.3g}: {}",
-        steps, time, kinetic, highest_energy, last_dt, last_dt * now.signal / grid.h(), cause));
+        steps, time, kinetic, highest_energy, last_dt, last_dt * seen().signal / grid.h(), cause));
 }
 
 }  // namespace repose::mpm

@@ -28,6 +28,12 @@ struct Signals {
 /// ω² = E/(ρD), D = h²/3 (cubic) or h²/4, with E the largest of 2(K + G/3), isotropic in the plane,
 /// and 2G, in shear: Δt = 2/ω is 0.82 h/c for a fluid, 1.03 h/c for μ(I) with G = 4K and 1.02 h/c
 /// for Cam-Clay with ν = 0.3 (cubic; quadratic: 0.87 of it).
+///
+/// The same limits hold with the signals c + |v| of the nodes, c_i² = Σ w m c_p²/m_i, in place of
+/// the points': by Cauchy and Schwarz |L_p|² ≤ D⁻¹ Σ w|v_i|² (and Σ w (x_i − x_p)² = D), so that
+/// ω² = Σ_p m c_p² |L_p|²/Σ_i m_i |v_i|² ≤ D⁻¹ max c_i². What the grid sees is never more than the
+/// fastest point, and half of it where the toe of a Cam-Clay column is one stiff point among softer
+/// ones. Signals::signal is therefore scaled by node_share, as last measured.
 inline double stable_step(const Signals& s, double courant, double h) {
   const double wave = s.signal == 0.0 ? HUGE_VAL : courant * h / s.signal;
   const double viscous = s.viscous_rate == 0.0 ? HUGE_VAL : 0.9 / s.viscous_rate;

@@ -11,15 +11,16 @@ template <std::size_t channels>
 using NodeTotals = std::array<std::array<double, block_nodes>, channels>;
 
 /// Own every node: sums what the tiles around put on it, always in the same order, into sums that
-/// lie on cache lines. Only the first `count` channels, the others stay as they are.
-template <std::size_t channels>
+/// lie on cache lines. Only the first `count` channels, the others stay as they are, and only of
+/// the blocks of points that are wanted.
+template <std::size_t channels, class Wanted>
 void add_tiles(const Grid& grid, const NodeBlock& nb,
                const std::array<TileChannel, channels>& channel, NodeTotals<channels>& sum,
-               std::size_t count = channels) {
+               std::size_t count, Wanted&& wanted) {
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       const std::int32_t source = nb.point_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
-      if (source < 0) continue;
+      if (source < 0 || !wanted(grid.point_blocks[static_cast<std::size_t>(source)])) continue;
       const Tile& tile = grid.tiles[static_cast<std::size_t>(source)];
       for_each_shared_row(dx, dy, [&](std::size_t node, std::size_t entry, auto columns) {
         for (std::size_t c = 0; c < count; ++c) {
@@ -30,6 +31,13 @@ void add_tiles(const Grid& grid, const NodeBlock& nb,
         }
       });
     }
+}
+
+template <std::size_t channels>
+void add_tiles(const Grid& grid, const NodeBlock& nb,
+               const std::array<TileChannel, channels>& channel, NodeTotals<channels>& sum,
+               std::size_t count = channels) {
+  add_tiles<channels>(grid, nb, channel, sum, count, [](const PointBlock&) { return true; });
 }
 
 /// Fills a tile's field from the node blocks around; from(node block) is where that block's nodes

@@ -75,7 +75,7 @@ class Accumulator {
         add(std::integral_constant<std::size_t, T_FX>{}, xsimd::fma(of(C_FXY), dy, fx));
         add(std::integral_constant<std::size_t, T_FY>{}, xsimd::fma(of(C_FYY), dy, fy));
       }
-      if constexpr (averages) add(std::integral_constant<std::size_t, T_ELASTIC>{}, of(C_E));
+      if constexpr (averages) add(std::integral_constant<std::size_t, T_EXTRA>{}, of(C_E));
     });
     if constexpr (Kernel::spline_gradient)
       add_force_by_slopes(at.w, Kernel::slopes_of_point(t_x, t_y), c, lane);
@@ -114,7 +114,7 @@ class Accumulator {
     });
   }
 
-  static constexpr std::size_t channels = averages ? tile_channels : T_ELASTIC;
+  static constexpr std::size_t channels = averages ? tile_channels : T_EXTRA;
   Pack sum_[channels * packs_per_stencil];
 };
 

@@ -27,12 +27,12 @@ struct WallNode {
     return read(block ? &block->vx : nullptr, block ? &block->vy : nullptr);
   }
   /// A scalar that points average is even in every wall.
-  static void mirror_elastic(const WallNode& a, const WallNode& c) {
+  static void mirror_extra(const WallNode& a, const WallNode& c) {
     const double m = a.m() + c.m();
     if (m == 0.0) return;
-    const double even = (a.m() * a.elastic() + c.m() * c.elastic()) / m;
-    if (a.block) a.block->elastic[a.place] = even;
-    if (c.block) c.block->elastic[c.place] = even;
+    const double even = (a.m() * a.extra() + c.m() * c.extra()) / m;
+    if (a.block) a.block->extra[a.place] = even;
+    if (c.block) c.block->extra[c.place] = even;
   }
   double real_mass() const { return block ? block->mass[place] : 0.0; }
   void set(double mirrored, const Pair& u, const Pair& v) const {
@@ -45,7 +45,7 @@ struct WallNode {
   }
 
  private:
-  double elastic() const { return block ? block->elastic[place] : 0.0; }
+  double extra() const { return block ? block->extra[place] : 0.0; }
   using Nodes = std::array<double, block_nodes>;
   Pair read(const Nodes* x, const Nodes* y) const {
     if (!block) return {};
@@ -99,7 +99,7 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode& a, c
   const double m_b = b.m();
   const double m_c = c.m();
   if (m_a + m_b + m_c == 0.0) return {};
-  WallNode::mirror_elastic(a, c);
+  WallNode::mirror_extra(a, c);
   const Triple u{a.before_forces(), b.before_forces(), c.before_forces()};
   const Triple v{a.after_forces(), b.after_forces(), c.after_forces()};
   double stick = wall.kind == Wall::Kind::no_slip ? 1.0 : 0.0;

@@ -53,11 +53,8 @@ SweepRun run_with(double courant, std::vector<double> depth, double front) {
   scene.courant = courant;
   scene.bodies.resize(1);
   scene.bodies[0].size = {1.0, 2.0};
-  run.summary = {{"status", "done"},
-                 {"front_m", front},
-                 {"height_m", depth[0]},
-                 {"time_s", 1.0},
-                 {"steps", 1.0 / courant}};
+  run.summary = {{"status", "done"},     {"front_m", front}, {"front_99_m", 0.8 * front},
+                 {"height_m", depth[0]}, {"time_s", 1.0},    {"steps", 1.0 / courant}};
   run.depth_m = std::move(depth);
   return run;
 }
@@ -72,6 +69,7 @@ TEST(MpmSweep, ChangesAreMeasuredFromTheShortestStep) {
   const auto change = change_between(runs[0], runs[2]);
   ASSERT_TRUE(change);
   EXPECT_DOUBLE_EQ(change->front, 1.1 / 1.0 - 1.0);
+  EXPECT_DOUBLE_EQ(change->front_99, 0.8 * 1.1 / (0.8 * 1.0) - 1.0);
   EXPECT_DOUBLE_EQ(change->height, 2.2 / 2.0 - 1.0);
   EXPECT_DOUBLE_EQ(change->profile_max, (2.2 - 2.0) / 2.0);
   // |Δdepth| of 0.2 over half a column, over the front of 1 m and H_0 = 2 m
@@ -185,7 +183,8 @@ TEST_F(ChartMpm, AQuickChart) {
       0);
   const nlohmann::json hand = summary("hand");
   EXPECT_EQ(chart[0].at("steps"), std::to_string(hand["steps"].get<int>()));
-  for (const char* key : {"front_m", "height_m", "kinetic_J_per_m", "angular_momentum"})
+  for (const char* key :
+       {"front_m", "front_99_m", "height_m", "kinetic_J_per_m", "angular_momentum"})
     EXPECT_EQ(chart[0].at(key), fmt::format("{:.10g}", hand[key].get<double>())) << key;
   EXPECT_EQ(chart[0].at("mean_dt_s"),
             fmt::format("{:.10g}", 0.2 / static_cast<double>(hand["steps"].get<int>())));

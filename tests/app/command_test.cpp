@@ -207,7 +207,7 @@ TEST_F(CommandTest, ARunLeavesACompleteResult) {
             "time_s,step,dt_s,front_m,front_max_m,height_m,kinetic_J_per_m,potential_J_per_m,"
             "elastic_J_per_m,dissipated_J_per_m,mass_kg_per_m,momentum_x,momentum_y,density_min,"
             "density_max,points_separated,transfer_loss_J_per_m,wall_loss_J_per_m,"
-            "energy_residual_J_per_m,outflow_kg_per_m,angular_momentum");
+            "energy_residual_J_per_m,outflow_kg_per_m,angular_momentum,front_99_m");
   EXPECT_EQ(series[1].substr(0, 4), "0,0,");
   EXPECT_EQ(series[101].substr(0, 9), "0.1,5000,");
   EXPECT_EQ(lines_of(content_of(folder / "profile.csv")).at(0), "x_m,depth_m");
@@ -227,8 +227,8 @@ TEST_F(CommandTest, ARunLeavesACompleteResult) {
   // sums of 128 equal masses: 128 roundings of at most 2^-53 each
   EXPECT_LT(std::abs(s.at("mass_error").get<double>()), 128 * 0x1p-53);
   for (const char* const key :
-       {"front_m", "front_max_m", "height_m", "kinetic_J_per_m", "energy_error", "density_min",
-        "density_max", "wall_s", "cpu_s", "point_steps_per_s", "peak_memory_MB"})
+       {"front_m", "front_99_m", "front_max_m", "height_m", "kinetic_J_per_m", "energy_error",
+        "density_min", "density_max", "wall_s", "cpu_s", "point_steps_per_s", "peak_memory_MB"})
     EXPECT_TRUE(s.at(key).is_number()) << key;
 
   // the resolved input gives the same bits, on one thread as well

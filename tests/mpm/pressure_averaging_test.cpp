@@ -29,7 +29,7 @@ AlignedVector<double> means(PointSet points, const AlignedVector<double>& elasti
   points_to_tile<K, true, true>(points, all, h, origin, elastic.data(), tile);
   VelocityTile nodes{};
   for (std::size_t n = 0; n < tile_nodes; ++n)
-    if (tile[T_MASS][n] > 0.0) nodes.elastic[n] = tile[T_ELASTIC][n] / tile[T_MASS][n];
+    if (tile[T_MASS][n] > 0.0) nodes.elastic[n] = tile[T_EXTRA][n] / tile[T_MASS][n];
   AlignedVector<double> vx(points.count), vy(points.count), mean(points.count);
   tile_to_points<K, Keeps::nothing, true>(nodes, origin, h, all, Retention{}, points,
                                           {vx.data(), vy.data(), mean.data()});
