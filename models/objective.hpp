@@ -11,7 +11,7 @@ namespace repose {
 /// ∂v_x/∂y)Δt [rad]. The rotation is Cayley's R = (I − ½WΔt)⁻¹(I + ½WΔt) (Hughes & Winget 1980),
 /// orthogonal for any step, so that the invariants of the stress change by round-off only.
 template <class T, int N>
-Sym<T, N> rotated_in_plane(const Sym<T, N>& stress, const T& angle) {
+[[gnu::always_inline]] inline Sym<T, N> rotated_in_plane(const Sym<T, N>& stress, const T& angle) {
   const T h = T(0.5) * angle;
   const T inv = T(1.0) / (T(1.0) + h * h);
   const T c = (T(1.0) - h * h) * inv;

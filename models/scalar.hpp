@@ -43,7 +43,7 @@ struct Twin {
     Pack::batch_bool_type a, b;
     friend Mask operator&&(const Mask& x, const Mask& y) { return {x.a && y.a, x.b && y.b}; }
     friend Mask operator||(const Mask& x, const Mask& y) { return {x.a || y.a, x.b || y.b}; }
-    friend Mask operator!(const Mask& x) { return {!x.a, !x.b}; }
+    [[gnu::always_inline]] friend Mask operator!(const Mask& x) { return {!x.a, !x.b}; }
   };
 
   friend Twin operator+(const Twin& x, const Twin& y) { return {x.a + y.a, x.b + y.b}; }
@@ -212,7 +212,7 @@ template <class T>
 /// the derivative of a Dual near 0 comes from the series (truncated below 1e-19 for |x| < 0.02),
 /// because the quotient rule would divide two cancelled numbers there.
 template <class T>
-T expm1_over(const T& x, const ExpPair<T>& of_x) {
+[[gnu::always_inline]] inline T expm1_over(const T& x, const ExpPair<T>& of_x) {
   if constexpr (ScalarTraits<T>::is_dual) {
     if (std::abs(value(x)) < 0.02) {
       T sum(1.0);
@@ -226,7 +226,7 @@ T expm1_over(const T& x, const ExpPair<T>& of_x) {
   }
 }
 template <class T>
-T expm1_over(const T& x) {
+[[gnu::always_inline]] inline T expm1_over(const T& x) {
   return expm1_over(x, exp_pair(x));
 }
 

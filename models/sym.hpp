@@ -70,7 +70,7 @@ Sym<T, N> deviator(const Sym<T, N>& a) {
 
 /// a : b
 template <class T, int N>
-T contract(const Sym<T, N>& a, const Sym<T, N>& b) {
+[[gnu::always_inline]] inline T contract(const Sym<T, N>& a, const Sym<T, N>& b) {
   T normal = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   T shear = a[3] * b[3];
   for (int i = 4; i < N; ++i) shear = shear + a[i] * b[i];

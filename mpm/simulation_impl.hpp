@@ -115,7 +115,7 @@ class Simulation::Impl {
   double reach() const { return 0.98 * grid.h(); }
   bool averages() const { return scene.pressure_averaging > 0.0; }
   /// Whether this step, or the n-th after it, measures node_share.
-  bool measures(int n = 0) const { return !averages() && (steps + n) % 4 == 0; }
+  bool measures(int n = 0) const { return !averages() && (steps + n) % 16 == 0; }
   Extra extra(int n) const {
     return averages() ? Extra::elastic : measures(n) ? Extra::signal : Extra::nothing;
   }
