@@ -53,8 +53,11 @@ double nominal_step(const mpm::Scene& scene) { return scene.dt.value_or(scene.co
 std::string name_of_run(const mpm::Scene& base, const mpm::Scene& scene) {
   const std::string step =
       scene.dt ? fmt::format("dt{}", *scene.dt) : fmt::format("courant{}", scene.courant);
-  return fmt::format("{}_{}_{}_h{}_{}", base.name, mpm::name_of(scene.transfer),
-                     mpm::name_of(scene.kernel), scene.h, step);
+  const std::string points = scene.points_per_cell == base.points_per_cell
+                                 ? ""
+                                 : fmt::format("_{}ppc", scene.points_per_cell);
+  return fmt::format("{}_{}_{}{}_h{}_{}", base.name, mpm::name_of(scene.transfer),
+                     mpm::name_of(scene.kernel), points, scene.h, step);
 }
 
 double initial_height(const mpm::Scene& scene) {
@@ -104,9 +107,10 @@ Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick,
         notes.push_back(fmt::format("{} is left out: {}", mpm::name_of(transfer), why));
     }
   if (sweep.kernels.empty()) sweep.kernels = {scene.kernel};
+  if (sweep.points_per_cell.empty()) sweep.points_per_cell = {scene.points_per_cell};
   if (sweep.cells.empty()) {
     sweep.cells = {4.0 * scene.h};
-    if (!quick) sweep.cells.push_back(2.0 * scene.h);
+    if (!quick) sweep.cells = {8.0 * scene.h, 4.0 * scene.h, 2.0 * scene.h};
   }
   if (sweep.courants.empty() && sweep.dts.empty()) {
     sweep.courants = {0.8, 0.4};
@@ -120,42 +124,53 @@ double SweepRun::figure(std::string_view key) const {
   return found != summary.end() && found->is_number() ? found->get<double>() : std::nan("");
 }
 
+SweepRun run_of(const SceneFile& base, mpm::Scene scene) {
+  SweepRun run{base, {}, {}, {}, {}};
+  scene.frame_interval = 0.0;
+  scene.series_interval = scene.end_time / rows_of_series;
+  mpm::raise_top_to_cells(scene);
+  mpm::validate(scene);
+  scene.name = name_of_run(base.scene, scene);
+  run.file.scene = std::move(scene);
+  return run;
+}
+
 std::vector<SweepRun> runs_of(const SceneFile& base, const Sweep& sweep) {
   std::vector<SweepRun> runs;
-  const auto descending = [](std::vector<double> values) {
+  const auto descending = [](auto values) {
     std::sort(values.rbegin(), values.rend());
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
   };
+  const auto add = [&](mpm::Scene scene, double h) {
+    scene.h = h;
+    const auto add_step = [&](double courant, std::optional<double> dt) {
+      scene.courant = courant;
+      scene.dt = dt;
+      try {
+        runs.push_back(run_of(base, scene));
+      } catch (const InputError& error) {
+        mpm::Scene with_own = scene;
+        with_own.transfer = base.scene.transfer;
+        mpm::raise_top_to_cells(with_own);
+        if (const std::string why = refusal(with_own, scene.transfer); !why.empty())
+          throw InputError("chart.transfers", why);
+        throw InputError("chart.cells", fmt::format("cells of {} m: {}", h, error.what()));
+      }
+    };
+    for (const double courant : descending(sweep.courants)) add_step(courant, {});
+    for (const double dt : descending(sweep.dts)) add_step(mpm::Scene{}.courant, dt);
+  };
   for (const mpm::Transfer transfer : sweep.transfers)
     for (const mpm::Kernel kernel : sweep.kernels)
-      for (const double h : descending(sweep.cells)) {
-        SceneFile file = base;
-        mpm::Scene& scene = file.scene;
+      for (const std::int64_t points : descending(sweep.points_per_cell)) {
+        mpm::Scene scene = base.scene;
         scene.transfer = transfer;
         scene.kernel = kernel;
-        scene.h = h;
-        scene.frame_interval = 0.0;
-        scene.series_interval = scene.end_time / rows_of_series;
-        mpm::raise_top_to_cells(scene);
-        try {
-          mpm::validate(scene);
-        } catch (const InputError& error) {
-          mpm::Scene with_own = scene;
-          with_own.transfer = base.scene.transfer;
-          if (const std::string why = refusal(with_own, transfer); !why.empty())
-            throw InputError("chart.transfers", why);
-          throw InputError("chart.cells", fmt::format("cells of {} m: {}", h, error.what()));
-        }
-        const auto add = [&](double courant, std::optional<double> dt) {
-          SweepRun& run = runs.emplace_back(SweepRun{file, {}, {}, {}, {}});
-          run.file.scene.courant = courant;
-          run.file.scene.dt = dt;
-          run.file.scene.name = name_of_run(base.scene, run.scene());
-        };
-        for (const double courant : descending(sweep.courants)) add(courant, {});
-        for (const double dt : descending(sweep.dts)) add(mpm::Scene{}.courant, dt);
+        scene.points_per_cell = static_cast<int>(points);
+        for (const double h : descending(sweep.cells)) add(scene, h);
       }
+  for (const double h : descending(sweep.reference)) add(base.scene, h);
   return runs;
 }
 
@@ -164,6 +179,7 @@ std::vector<SweepSeries> series_of(std::span<const SweepRun> runs) {
   for (const SweepRun& run : runs) {
     const auto same = [&](const SweepSeries& s) {
       return s.scene().transfer == run.scene().transfer && s.scene().kernel == run.scene().kernel &&
+             s.scene().points_per_cell == run.scene().points_per_cell &&
              s.scene().h == run.scene().h;
     };
     const auto found = std::find_if(list.begin(), list.end(), same);
@@ -233,15 +249,16 @@ ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool resu
   RunRequest request;
   request.file = run.file;
   request.file.notes.clear();
-  request.input = resolved_input(run.file, "One run of repose chart mpm.");
+  request.input = resolved_input(run.file, "One of several runs of a scene.");
   request.folder = folder / run.scene().name;
   request.threads = threads;
   request.picture = false;
   request.quiet = true;
   const std::string there = noted_status(request.folder / "summary.json");
-  const bool same = resume && text_of(request.folder / "input.toml") == request.input;
+  const bool same = text_of(request.folder / "input.toml") == request.input;
   if (!same || (there != "done" && there != "failed")) {
-    request.resume = same && there == "interrupted" && fs::exists(request.folder / "checkpoint.h5");
+    request.resume =
+        resume && same && there == "interrupted" && fs::exists(request.folder / "checkpoint.h5");
     const ExitCode code = run_scene(request);
     if (code == ExitCode::interrupted) return code;
   }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Many runs of one scene that differ in transfer, kernel, cell size and step, and what their
-/// results say of the step's influence.
+/// Many runs of one scene that differ in transfer, kernel, points per cell, cell size and step, and
+/// what their results say of the step's influence.
 
 #include <map>
 #include <span>
@@ -14,9 +14,10 @@
 namespace repose::app {
 
 /// What is not given: every transfer that the scene admits (a note tells of the others), the
-/// scene's kernel, cells of 4 and 2 times the scene's h, Courant numbers of 0.8, 0.4, 0.2, 0.1
-/// unless there are fixed steps. quick: cells of 4 h alone and Courant numbers of 0.8 and 0.4, so
-/// that the whole chart takes seconds.
+/// scene's kernel and points per cell, cells of 8, 4 and 2 times the scene's h (three, so that there
+/// is a reference: mpm_errors.hpp), Courant numbers of 0.8, 0.4, 0.2, 0.1 unless there are fixed
+/// steps. quick: cells of 4 h alone and Courant numbers of 0.8 and 0.4, so that the whole chart takes
+/// seconds.
 Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick,
                     std::vector<std::string>& notes);
 
@@ -40,12 +41,16 @@ struct SweepRun {
   double bytes_per_point() const { return 1e6 * figure("state_memory_MB") / figure("points"); }
 };
 
-/// Every combination, in the order transfer, kernel, cell size, step, with longer steps first. A
-/// transfer's own settings are the scene's. Errors: InputError, key "chart.cells" or
-/// "chart.transfers".
+/// A run of a scene in a sweep: h, transfer, kernel, points per cell and the step as in `scene`,
+/// rows of its series evenly over the time, no frames; named after what differs.
+SweepRun run_of(const SceneFile& base, mpm::Scene scene);
+
+/// Every combination, in the order transfer, kernel, points per cell, cell size, step, with longer
+/// steps first; then those of Sweep::reference. A transfer's own settings are the scene's. Errors:
+/// InputError, key "chart.cells" or "chart.transfers".
 std::vector<SweepRun> runs_of(const SceneFile& scene, const Sweep& sweep);
 
-/// Runs of one transfer, kernel and cell size: what only the step tells apart.
+/// Runs of one transfer, kernel, points per cell and cell size: what only the step tells apart.
 struct SweepSeries {
   std::vector<const SweepRun*> runs;  ///< all of them, as in the sweep
   const mpm::Scene& scene() const { return runs.front()->scene(); }
@@ -71,8 +76,9 @@ std::optional<SweepChange> change_between(const SweepRun& run, const SweepRun& r
 /// steps differ by a factor of 4; absent if there is no such pair or one of its runs is missing.
 std::optional<SweepChange> change_when_quartered(const SweepSeries& series);
 
-/// Runs it as `repose run` would, in folder/NAME, or with `resume` takes what lies there: a
-/// finished run of the same input as it is, an interrupted one from its checkpoint. Returns
+/// Runs it as `repose run` would, in folder/NAME. What lies there already is not repeated if it
+/// came to its end (or failed) from the same input (its text is compared, not a hash of it) by the
+/// same version of repose; with `resume`, an interrupted run goes on from its checkpoint. Returns
 /// interrupted if it was; a run that failed is kept as such. Errors: IoError.
 ExitCode carry_out(SweepRun& run, const std::filesystem::path& folder, int threads, bool resume);
 

@@ -3,7 +3,7 @@
 /// The pictures of `repose chart mpm`. A transfer keeps its colour and marker in all of them; one
 /// column of panels per cell size and kernel.
 
-#include "app/mpm_sweep.hpp"
+#include "app/mpm_errors.hpp"
 #include "app/plot/figure.hpp"
 
 namespace repose::app {
@@ -18,5 +18,12 @@ Figure history_figure(const std::vector<SweepSeries>& series, const std::string&
 /// CPU seconds over the cell size with the slope h^-3 of a fixed scene, speed and memory over the
 /// number of points; one line per transfer, kernel and step. For several cell sizes.
 Figure cost_figure(const std::vector<SweepSeries>& series, const std::string& name);
+
+/// Work and precision: error of every run over its CPU seconds, a panel per quantity that has a
+/// reference and one for the energy ledger. A line joins the runs of a transfer, kernel and points
+/// per cell at its longest step over the cells, dots are its other steps; rings mark the Pareto
+/// front, the grey band is below the error bar of the reference.
+Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReference& reference,
+                             const std::string& name);
 
 }  // namespace repose::app

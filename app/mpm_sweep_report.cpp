@@ -32,12 +32,13 @@ constexpr std::array<std::string_view, 17> copied{"points",
 /// A cell of a table: empty where there is no number.
 std::string cell(double x) { return std::isfinite(x) ? fmt::format("{:.10g}", x) : ""; }
 
-/// transfer,kernel,h_m,courant,dt_s: which run a row belongs to.
+/// transfer,kernel,points_per_cell,h_m,courant,dt_s: which run a row belongs to.
 std::string key_cells(const mpm::Scene& scene) {
-  return fmt::format("{},{},{},{},{}", mpm::name_of(scene.transfer), mpm::name_of(scene.kernel),
-                     scene.h, scene.dt ? "" : cell(scene.courant), scene.dt ? cell(*scene.dt) : "");
+  return fmt::format("{},{},{},{},{},{}", mpm::name_of(scene.transfer), mpm::name_of(scene.kernel),
+                     scene.points_per_cell, scene.h, scene.dt ? "" : cell(scene.courant),
+                     scene.dt ? cell(*scene.dt) : "");
 }
-constexpr std::string_view key_columns = "transfer,kernel,h_m,courant,dt_s";
+constexpr std::string_view key_columns = "transfer,kernel,points_per_cell,h_m,courant,dt_s";
 
 Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
@@ -110,6 +111,7 @@ Json sweep_answer(const std::vector<SweepSeries>& series) {
     const std::vector<const SweepRun*> runs = s.done_runs();
     Json line{{"transfer", mpm::name_of(s.scene().transfer)},
               {"kernel", mpm::name_of(s.scene().kernel)},
+              {"points_per_cell", s.scene().points_per_cell},
               {"h_m", s.scene().h},
               {"runs", s.runs.size()},
               {"done", runs.size()}};
@@ -167,6 +169,115 @@ std::string answer_text(const Json& answer) {
                       line["runs"].get<int>());
     text += "\n";
   }
+  return text;
+}
+
+std::string errors_csv(std::span<const SweepRun> runs, const SweepReference& reference) {
+  std::string text = std::string(key_columns) + ",cpu_s";
+  std::array<std::vector<bool>, quantity_count> fronts;
+  for (std::size_t q = 0; q < quantity_count; ++q) {
+    text += fmt::format(",{0}_error,{0}_pareto", quantity_names[q]);
+    fronts[q] = pareto_front(runs, static_cast<Quantity>(q), reference);
+  }
+  text += ",energy_error\n";
+  const double bin = common_bin(runs);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!runs[i].done()) continue;
+    text += key_cells(runs[i].scene()) + "," + cell(runs[i].figure("cpu_s"));
+    for (std::size_t q = 0; q < quantity_count; ++q) {
+      const double error = error_of(runs[i], static_cast<Quantity>(q), reference, bin);
+      text += fmt::format(",{},{}", cell(error),
+                          std::isfinite(error) ? (fronts[q][i] ? "1" : "0") : "");
+    }
+    text += "," + cell(runs[i].figure("energy_error")) + "\n";
+  }
+  return text;
+}
+
+std::string curve_csv(const Eigen::VectorXd& shares, Quantity q, const mpm::Scene& scene,
+                      double bin) {
+  const QuantityCurve curve = curve_of(shares, q, scene, bin);
+  std::string text =
+      fmt::format("{},{}\n", q == Quantity::profile ? "x_m" : "time_s", column_of(q));
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    text += fmt::format("{:.10g},{:.10g}\n", curve.x[i], curve.y[i]);
+  return text;
+}
+
+Json errors_answer(std::span<const SweepRun> runs, const SweepReference& reference) {
+  const std::vector<SweepFamily> families = families_of(runs);
+  const double bin = common_bin(runs);
+  Json answer{{"from", families[reference.family].name()},
+              {"cells_m", reference.cells},
+              {"steps", reference.steps}};
+  for (std::size_t q = 0; q < quantity_count; ++q) {
+    const auto& value = reference.values[q];
+    if (!value) continue;
+    Json& entry = answer["reference"][std::string(quantity_names[q])];
+    entry = {{"error_bar", value->error},
+             {"order_observed", finite_or_null(value->observed)},
+             {"order_used", value->order}};
+    if (!is_curve(static_cast<Quantity>(q))) entry["value"] = value->value[0];
+  }
+  Json& list = answer["families"] = Json::array();
+  for (const SweepFamily& family : families) {
+    if (family.cells().size() < 2) continue;
+    for (std::size_t k = 0; k < quantity_count; ++k) {
+      const auto q = static_cast<Quantity>(k);
+      if (!reference.values[k]) continue;
+      const auto levels = family.levels(q, bin);
+      Json orders = Json::array(), errors = Json::array();
+      for (std::size_t i = 0; i + 2 < levels.size(); ++i)
+        orders.push_back(
+            finite_or_null(calibration::observed_order(levels[i], levels[i + 1], levels[i + 2])));
+      for (const auto& level : levels)
+        errors.push_back(calibration::relative_distance(level.mean(), reference.values[k]->value));
+      const calibration::ShownErrors shown = shown_errors(family, q, reference, bin);
+      list.push_back({{"family", family.name()},
+                      {"law", family.scene().bodies.front().law.name},
+                      {"kernel", mpm::name_of(family.scene().kernel)},
+                      {"transfer", mpm::name_of(family.scene().transfer)},
+                      {"points_per_cell", family.scene().points_per_cell},
+                      {"quantity", quantity_names[k]},
+                      {"cells_m", family.cells()},
+                      {"errors", errors},
+                      {"orders", orders},
+                      {"bias", shown.bias},
+                      {"remainders", shown.remainders},
+                      {"scatter", shown.scatter}});
+    }
+  }
+  return answer;
+}
+
+std::string errors_text(const Json& answer) {
+  const auto numbers = [](const Json& list, double scale, const char* format) {
+    std::string text;
+    for (const Json& x : list)
+      text += (text.empty() ? "" : ", ") +
+              (x.is_number() ? fmt::format(fmt::runtime(format), scale * x.get<double>()) : "-");
+    return text;
+  };
+  std::string text =
+      fmt::format("\nreference: {}, extrapolated from cells of {} mm, {} steps each\n",
+                  answer["from"].get<std::string>(), numbers(answer["cells_m"], 1e3, "{:.4g}"),
+                  answer["steps"].get<std::size_t>());
+  for (const auto& [name, entry] : answer["reference"].items())
+    text +=
+        fmt::format("  {:<9} {:<11} ± {:.2g} %   order {}\n", name,
+                    entry.contains("value") ? fmt::format("{:.4f} m", entry["value"].get<double>())
+                                            : std::string("a curve"),
+                    100.0 * entry["error_bar"].get<double>(),
+                    entry["order_observed"].is_number()
+                        ? fmt::format("{:.2f}", entry["order_observed"].get<double>())
+                        : std::string("not observed, 1 taken"));
+  text += fmt::format("{:<22} {:<9} {:<34} {}\n", "errors from it", "", "coarse to fine (%)",
+                      "observed orders");
+  for (const Json& line : answer["families"])
+    text +=
+        fmt::format("{:<22} {:<9} {:<34} {}\n", line["family"].get<std::string>(),
+                    line["quantity"].get<std::string>(), numbers(line["errors"], 100.0, "{:.2g}"),
+                    numbers(line["orders"], 1.0, "{:.2f}"));
   return text;
 }
 

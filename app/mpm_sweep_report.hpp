@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// The tables of `repose chart mpm`, and its answer: does the run-out depend on the step?
+/// The tables of `repose chart mpm`, and its answers: does the run-out depend on the step, and what
+/// accuracy does a second buy?
 
-#include "app/mpm_sweep.hpp"
+#include "app/mpm_errors.hpp"
 
 namespace repose::app {
 
@@ -23,5 +24,21 @@ nlohmann::ordered_json sweep_answer(const std::vector<SweepSeries>& series);
 
 /// The answer as a table for people.
 std::string answer_text(const nlohmann::ordered_json& answer);
+
+/// errors.csv: a row per finished run with its error in every quantity that has a reference, the
+/// ledger's, its CPU seconds, and whether it lies on the Pareto front of each quantity.
+std::string errors_csv(std::span<const SweepRun> runs, const SweepReference& reference);
+
+/// The extrapolated profile (x_m,depth_m) or kinetic energy (time_s,kinetic_J_per_m).
+std::string curve_csv(const Eigen::VectorXd& shares, Quantity q, const mpm::Scene& scene,
+                      double bin);
+
+/// The reference with its error bars, and per family and quantity the observed orders and the
+/// constants of the error model.
+nlohmann::ordered_json errors_answer(std::span<const SweepRun> runs,
+                                     const SweepReference& reference);
+
+/// The same as a table for people.
+std::string errors_text(const nlohmann::ordered_json& answer);
 
 }  // namespace repose::app

@@ -1,5 +1,6 @@
 #include "app/read_chart.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -46,8 +47,19 @@ ChartTable read_chart(InputFile& file) {
       table.choices("transfers", {mpm::transfer_names.begin(), mpm::transfer_names.end()}));
   sweep.kernels = as<mpm::Kernel>(
       table.choices("kernels", {mpm::kernel_names.begin(), mpm::kernel_names.end()}));
+  if (const auto list = table.number_list(
+          {"points_per_cell", "-", "a square number: 1, 4, 9, 16", Range{1.0, 100.0}, {}}))
+    for (const double count : *list) {
+      if (count != std::floor(count))
+        table.report("points_per_cell",
+                     fmt::format("chart.points_per_cell: {} is no whole number", count));
+      sweep.points_per_cell.push_back(std::lround(count));
+    }
   sweep.cells =
       table.number_list({"cells", "m", "cell sizes", positive, {}}).value_or(std::vector<double>{});
+  sweep.reference =
+      table.number_list({"reference", "m", "finer cells for the reference", positive, {}})
+          .value_or(std::vector<double>{});
   sweep.courants = table.number_list({"courants", "-", "Courant numbers", mpm::courant_range, {}})
                        .value_or(std::vector<double>{});
   sweep.dts =
@@ -68,9 +80,13 @@ std::string chart_text(const Sweep& sweep) {
   std::vector<std::string_view> transfers, kernels;
   for (const mpm::Transfer t : sweep.transfers) transfers.push_back(mpm::name_of(t));
   for (const mpm::Kernel k : sweep.kernels) kernels.push_back(mpm::name_of(k));
-  std::string text = chart_text(ChartKind::mpm) +
-                     fmt::format("transfers = {}\nkernels = {}\ncells = [{}]  # m\n",
-                                 quoted(transfers), quoted(kernels), fmt::join(sweep.cells, ", "));
+  std::string text =
+      chart_text(ChartKind::mpm) +
+      fmt::format("transfers = {}\nkernels = {}\npoints_per_cell = [{}]\ncells = [{}]  # m\n",
+                  quoted(transfers), quoted(kernels), fmt::join(sweep.points_per_cell, ", "),
+                  fmt::join(sweep.cells, ", "));
+  if (!sweep.reference.empty())
+    text += fmt::format("reference = [{}]  # m\n", fmt::join(sweep.reference, ", "));
   if (!sweep.courants.empty())
     text += fmt::format("courants = [{}]\n", fmt::join(sweep.courants, ", "));
   if (!sweep.dts.empty()) text += fmt::format("dts = [{}]  # s\n", fmt::join(sweep.dts, ", "));

@@ -17,7 +17,10 @@ constexpr std::array<std::string_view, 3> chart_names{"point", "fit", "mpm"};
 struct Sweep {
   std::vector<mpm::Transfer> transfers;
   std::vector<mpm::Kernel> kernels;
-  std::vector<double> cells;     ///< h [m]
+  std::vector<std::int64_t> points_per_cell;
+  std::vector<double> cells;  ///< h [m]
+  std::vector<double>
+      reference;  ///< finer h, with the scene's own transfer, kernel and points alone [m]
   std::vector<double> courants;  ///< Courant numbers
   std::vector<double> dts;       ///< fixed steps [s]
 };

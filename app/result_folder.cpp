@@ -22,26 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 40> outputs{"summary.json",        "checkpoint.h5",
-                                                   "series.csv",          "profile.csv",
-                                                   "curve.csv",           "final.svg",
-                                                   "curve.svg",           "fit.json",
-                                                   "fitted.toml",         "fit.svg",
-                                                   "chart.csv",           "chart.svg",
-                                                   "table.csv",           "error_map.csv",
-                                                   "error_map.svg",       "history.csv",
-                                                   "history.svg",         "cost.svg",
-                                                   "chart.json",          "predictions.csv",
-                                                   "clay_steps.csv",      "clay_steps.svg",
-                                                   "clay_kappa.csv",      "clay_kappa.svg",
-                                                   "clay_paths.csv",      "clay_paths.svg",
-                                                   "mu_i_boundary.csv",   "mu_i_boundary.svg",
-                                                   "mu_i_refinement.csv", "mu_i_refinement.svg",
-                                                   "mu_i_curves.csv",     "mu_i_curves.svg",
-                                                   "mu_i_collapse.csv",   "mu_i_collapse.svg",
-                                                   "step_limits.csv",     "step_limits.svg",
-                                                   "mpm_failures.csv",    "mpm_failures.svg",
-                                                   "collapse.csv",        "collapse.svg"};
+constexpr std::array<std::string_view, 49> outputs{"summary.json", "checkpoint.h5", "series.csv", "profile.csv", "curve.csv", "final.svg", "curve.svg", "fit.json", "fitted.toml", "fit.svg", "chart.csv", "chart.svg", "table.csv", "error_map.csv", "error_map.svg", "history.csv", "history.svg", "cost.svg", "chart.json", "predictions.csv", "clay_steps.csv", "clay_steps.svg", "clay_kappa.csv", "clay_kappa.svg", "clay_paths.csv", "clay_paths.svg", "mu_i_boundary.csv", "mu_i_boundary.svg", "mu_i_refinement.csv", "mu_i_refinement.svg", "mu_i_curves.csv", "mu_i_curves.svg", "mu_i_collapse.csv", "mu_i_collapse.svg", "step_limits.csv", "step_limits.svg", "mpm_failures.csv", "mpm_failures.svg", "collapse.csv", "collapse.svg", "errors.csv", "work_precision.svg", "reference_profile.csv", "reference_kinetic.csv", "accuracy.csv", "accuracy.svg", "estimate.csv", "advised.toml", "fit_diagnostics.svg"};
 
 /// NAME_00012.hdf or NAME.hdf.series, or a temporary of one of them.
 bool is_frame_file(std::string name) {

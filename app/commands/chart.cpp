@@ -17,7 +17,12 @@ struct ListOption {
 constexpr std::array list_options{
     ListOption{"transfers", "step.transfer, as in apic,relaxed (default: all)", true},
     ListOption{"kernels", "grid.kernel (default: the scene's)", true},
-    ListOption{"cells", "grid.h in m (default: 4 and 2 times the scene's)", false},
+    ListOption{"points-per-cell", "grid.points_per_cell (default: the scene's)", false},
+    ListOption{"cells", "grid.h in m (default: 8, 4 and 2 times the scene's)", false},
+    ListOption{"reference",
+               "finer grid.h in m, run with the scene's own transfer and kernel alone, for the "
+               "reference (default: none)",
+               false},
     ListOption{"courants", "step.courant (default: 0.8,0.4,0.2,0.1 unless --dts)", false},
     ListOption{"dts", "step.dt in s, fixed steps (default: none)", false}};
 
@@ -39,7 +44,9 @@ std::string override_of(const ListOption& option, const std::string& list) {
                          option.words ? fmt::format("\"{}\"", item) : item);
     from = to + 1;
   }
-  return fmt::format("chart.{}=[{}]", option.name, value);
+  std::string key(option.name);
+  std::replace(key.begin(), key.end(), '-', '_');
+  return fmt::format("chart.{}=[{}]", key, value);
 }
 
 /// Which chart: by its name, or by the [chart] table of a file, which then stands in for FILE.
@@ -134,7 +141,8 @@ Command add_chart(CLI::App& root) {
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""));
   verb->add_flag("--resume", options.resume,
-                 "mpm: keep the runs that an earlier chart left in the result folder");
+                 "mpm: continue an interrupted run from its checkpoint; finished ones of the "
+                 "same input are never repeated");
   add_set(*verb, options);
   add_quiet(*verb, options);
   return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common),

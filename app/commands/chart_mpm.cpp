@@ -67,12 +67,28 @@ class MpmChart {
         std::count_if(runs_.begin(), runs_.end(), [](const SweepRun& run) { return run.done(); });
     if (sound == 0 && status == "done") status = "failed";
     std::vector<std::string> files{"chart.csv", "history.csv"};
-    if (sound > 0) draw(folder, series, files);
+    const std::optional<SweepReference> reference = reference_of(runs_, scene_.scene);
+    if (reference) {
+      folder.write_file("errors.csv", errors_csv(runs_, *reference));
+      files.push_back("errors.csv");
+      for (const Quantity q : {Quantity::profile, Quantity::kinetic}) {
+        const auto& value = reference->values[static_cast<std::size_t>(q)];
+        if (!value) continue;
+        files.push_back(fmt::format("reference_{}.csv", name_of(q)));
+        folder.write_file(files.back(),
+                          curve_csv(value->value, q, runs_.front().scene(), common_bin(runs_)));
+      }
+    }
+    if (sound > 0) draw(folder, series, reference, files);
     const Json answer = sweep_answer(series);
-    write_summary(folder, status, static_cast<std::size_t>(sound), answer, before);
+    const Json errors = reference ? errors_answer(runs_, *reference) : Json(nullptr);
+    write_summary(folder, status, static_cast<std::size_t>(sound), answer, errors, before);
     if (!options_.quiet && !options_.json)
-      fmt::print("{}, from the longest step to the shortest:\n{}{}: {}\n", scene_.scene.name,
-                 answer_text(answer), folder.path().string(), fmt::join(files, ", "));
+      fmt::print("{}, from the longest step to the shortest:\n{}{}{}: {}\n", scene_.scene.name,
+                 answer_text(answer),
+                 reference ? errors_text(errors)
+                           : "no reference: three cell sizes of one transfer and kernel make one\n",
+                 folder.path().string(), fmt::join(files, ", "));
     if (status == "interrupted") {
       if (!options_.quiet && !options_.json)
         fmt::print(stderr,
@@ -102,7 +118,7 @@ class MpmChart {
   }
 
   void draw(const ResultFolder& folder, const std::vector<SweepSeries>& series,
-            std::vector<std::string>& files) const {
+            const std::optional<SweepReference>& reference, std::vector<std::string>& files) const {
     const std::string name =
         fmt::format("{} to {:.4g} s", scene_.scene.name, scene_.scene.end_time);
     const auto render = [&](const Figure& figure, const std::string& file) {
@@ -116,10 +132,11 @@ class MpmChart {
     render(step_figure(series, name), "chart.svg");
     render(history_figure(series, name), "history.svg");
     if (sweep_.cells.size() > 1) render(cost_figure(series, name), "cost.svg");
+    if (reference) render(work_precision_figure(runs_, *reference, name), "work_precision.svg");
   }
 
   void write_summary(const ResultFolder& folder, const std::string& status, std::size_t sound,
-                     const Json& answer, const Usage& before) const {
+                     const Json& answer, const Json& errors, const Usage& before) const {
     const Usage after = usage();
     Json summary{{"repose", version_string},
                  {"kind", "chart_mpm"},
@@ -133,6 +150,7 @@ class MpmChart {
                  {"cpu_s", after.cpu_s - before.cpu_s},
                  {"allowed_change", allowed_change},
                  {"answer", answer},
+                 {"errors", errors},
                  {"warnings", warnings()}};
     folder.write_file("summary.json", summary.dump(2) + "\n");
     if (options_.json) fmt::print("{}\n", summary.dump());

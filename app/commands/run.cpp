@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "app/accurate_run.hpp"
 #include "app/commands/command.hpp"
 #include "app/file_kind.hpp"
 #include "app/resolved_input.hpp"
@@ -11,7 +13,72 @@
 namespace repose::app {
 namespace {
 
-ExitCode run_file(const std::string& path, const CommonOptions& options) {
+/// What `repose run` takes beside the options of every run.
+struct RunArguments {
+  CommonOptions common;
+  std::string file;
+  std::optional<double> accuracy, budget;
+  std::string quantity, runs;
+};
+
+/// What --accuracy chooses cannot be set as well.
+void refuse_chosen_keys(const CommonOptions& options) {
+  for (const char* const key :
+       {"grid.h", "grid.kernel", "step.transfer", "step.courant", "step.dt"})
+    for (const std::string& set : options.sets)
+      if (set.starts_with(std::string(key) + "="))
+        throw BadInput({fmt::format("--set {}: --accuracy chooses {} itself", set, key)});
+}
+
+ExitCode run_accurately(const RunArguments& arguments) {
+  const CommonOptions& options = arguments.common;
+  AccuracyRequest request;
+  const std::string& quantity = arguments.quantity;
+  if (quantity.empty())
+    throw BadInput(
+        {fmt::format("--accuracy needs --for, one of {}", fmt::join(quantity_names, ", "))});
+  const auto named = std::find(quantity_names.begin(), quantity_names.end(), quantity);
+  if (named == quantity_names.end()) {
+    const std::string near = closest(quantity, {quantity_names.begin(), quantity_names.end()});
+    throw BadInput(
+        {fmt::format("--for {}: one of {} is needed{}", quantity, fmt::join(quantity_names, ", "),
+                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
+  }
+  request.quantity = static_cast<Quantity>(named - quantity_names.begin());
+  const auto number = [](const char* name, double x, double upper, const char* meaning) {
+    if (!(x > 0.0) || !(x <= upper))
+      throw BadInput(
+          {fmt::format("--{} {}: {} must be a number in (0, {}]", name, x, meaning, upper)});
+    return x;
+  };
+  request.target = number("accuracy", *arguments.accuracy, 0.5, "the relative error");
+  if (arguments.budget) request.budget = number("budget", *arguments.budget, 1e9, "CPU seconds");
+  refuse_chosen_keys(options);
+  InputFile input = InputFile::read(arguments.file, options.sets);
+  require_kind(input, FileKind::scene, "run");
+  request.file = read_scene(input);
+  request.origin = origin_line(arguments.file, options);
+  request.folder = options.output.empty()
+                       ? ResultFolder::default_path(request.file.scene.name + "_accuracy")
+                       : std::filesystem::path(options.output);
+  request.runs =
+      arguments.runs.empty() ? request.folder / "runs" : std::filesystem::path(arguments.runs);
+  request.threads = options.threads > 0 ? options.threads : 1;
+  request.seed = options.seed;
+  request.resume = options.resume;
+  request.quiet = options.quiet;
+  request.json = options.json;
+  return run_to_accuracy(request);
+}
+
+ExitCode run_file(const RunArguments& arguments) {
+  const CommonOptions& options = arguments.common;
+  const std::string& path = arguments.file;
+  if (arguments.accuracy) return run_accurately(arguments);
+  for (const auto& [given, option] : {std::pair{arguments.budget.has_value(), "--budget"},
+                                      {!arguments.quantity.empty(), "--for"},
+                                      {!arguments.runs.empty(), "--runs"}})
+    if (given) throw BadInput({fmt::format("{} goes with --accuracy, which is missing", option)});
   InputFile input = InputFile::read(path, options.sets);
   require_kind(input, FileKind::scene, "run");
   RunRequest request;
@@ -41,12 +108,29 @@ Command add_run(CLI::App& root) {
       "Examples:\n"
       "  repose run data/scenes/flat_mu_i.toml\n"
       "  repose run data/scenes/flat_mu_i.toml --set grid.h=0.0125 -o results/coarse\n"
-      "  repose run data/scenes/flat_mu_i.toml --resume     after an interruption (Ctrl-C)");
-  const auto options = std::make_shared<CommonOptions>();
-  const auto file = std::make_shared<std::string>();
-  verb->add_option("SCENE.toml", *file, "Scene file")->type_name("")->required();
-  add_run_options(*verb, *options);
-  return {verb, options, [options, file] { return run_file(*file, *options); }};
+      "  repose run data/scenes/flat_mu_i.toml --resume     after an interruption (Ctrl-C)\n"
+      "  repose run data/scenes/flat_mu_i.toml --accuracy 0.02 --for front_99 --budget 60");
+  const auto arguments = std::make_shared<RunArguments>();
+  CommonOptions& options = arguments->common;
+  verb->add_option("SCENE.toml", arguments->file, "Scene file")->type_name("")->required();
+  add_run_options(*verb, options);
+  verb->add_option(
+          "--accuracy", arguments->accuracy,
+          "Relative error to reach, as in 0.02: chooses h, kernel, transfer and step, runs "
+          "coarse and fine ones, and gives what they tend to with an error bar")
+      ->type_name("E");
+  verb->add_option("--for", arguments->quantity,
+                   fmt::format("Of what (with --accuracy): {}", fmt::join(quantity_names, ", ")))
+      ->type_name("QUANTITY");
+  verb->add_option("--budget", arguments->budget,
+                   "CPU seconds that --accuracy may take; refuses beforehand what takes more")
+      ->type_name("SECONDS");
+  verb->add_option("--runs", arguments->runs,
+                   "Where the runs of --accuracy lie; those there are not repeated (default: runs/ "
+                   "in the result folder)")
+      ->type_name("DIR");
+  return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
+          [arguments] { return run_file(*arguments); }};
 }
 
 }  // namespace repose::app

@@ -98,7 +98,7 @@ TEST(MpmSweep, VariesEverythingAndKeepsTheRestOfTheScene) {
   std::vector<std::string> notes;
   const Sweep sweep = with_defaults({}, scene.scene, false, notes);
   const std::vector<SweepRun> runs = runs_of(scene, sweep);
-  EXPECT_EQ(runs.size(), mpm::transfer_names.size() * 2 * 4);  // h of 25 and 12.5 mm, four steps
+  EXPECT_EQ(runs.size(), mpm::transfer_names.size() * 3 * 4);  // h of 50, 25, 12.5 mm, four steps
   std::set<std::string> names;
   for (const SweepRun& run : runs) {
     names.insert(run.scene().name);
@@ -107,8 +107,15 @@ TEST(MpmSweep, VariesEverythingAndKeepsTheRestOfTheScene) {
     EXPECT_EQ(run.scene().bodies[0].law.values.at("K"), 254800.0);
   }
   EXPECT_EQ(names.size(), runs.size());
-  EXPECT_EQ(runs[0].scene().name, "flat_mu_i_pic_cubic_h0.025_courant0.8");
-  EXPECT_EQ(runs[7].scene().h, 0.0125);
+  EXPECT_EQ(runs[0].scene().name, "flat_mu_i_pic_cubic_h0.05_courant0.8");
+  EXPECT_EQ(runs[11].scene().h, 0.0125);
+  Sweep more = sweep;
+  more.points_per_cell = {9, 4};
+  more.reference = {0.00625};
+  const std::vector<SweepRun> all = runs_of(scene, more);
+  ASSERT_EQ(all.size(), 2 * runs.size() + 4);
+  EXPECT_EQ(all[0].scene().name, "flat_mu_i_pic_cubic_9ppc_h0.05_courant0.8");
+  EXPECT_EQ(all.back().scene().name, "flat_mu_i_relaxed_cubic_h0.00625_courant0.1");
   EXPECT_EQ(with_defaults({}, scene.scene, true, notes).cells, std::vector<double>{0.025});
   Sweep fixed;
   fixed.dts = {1e-4};
@@ -227,7 +234,7 @@ TEST_F(ChartMpm, AQuickChart) {
   EXPECT_EQ(s["answer"][0]["front_m"][0], hand["front_m"]);
   EXPECT_TRUE(s["answer"][0]["independent_of_step"].is_null()) << "no step is a quarter of another";
 
-  // its input.toml makes the same chart; --resume repeats nothing
+  // its input.toml makes the same chart; once more in the same folder, nothing is repeated
   const auto physics = [](Table table) {
     for (auto& row : table)
       for (const char* key : {"cpu_s", "point_steps_per_cpu_s"}) row.erase(key);
@@ -237,7 +244,6 @@ TEST_F(ChartMpm, AQuickChart) {
   EXPECT_EQ(physics(table_of(base_ / "b/chart.csv")), physics(chart));
   const std::string before = content_of(base_ / "a/chart.csv");
   std::vector<std::string> again = quick;
-  again.push_back("--resume");
   ASSERT_EQ(run(again, "a"), 0) << error_;
   EXPECT_EQ(content_of(base_ / "a/chart.csv"), before) << "the same seconds, so the same runs";
   // another scene's runs are not taken for this one's

@@ -1,0 +1,79 @@
+#include "app/mpm_quantity.hpp"
+
+#include <cmath>
+
+namespace repose::app {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// Volume left of x under the piecewise linear depth.
+class Volume {
+ public:
+  Volume(const std::vector<double>& x, const std::vector<double>& depth) : x_(x), depth_(depth) {
+    sum_.assign(x.size(), 0.0);
+    for (std::size_t i = 1; i < x.size(); ++i)
+      sum_[i] = sum_[i - 1] + 0.5 * (depth[i - 1] + depth[i]) * (x[i] - x[i - 1]);
+  }
+  double left_of(double x) const {
+    const auto above = std::upper_bound(x_.begin(), x_.end(), x);
+    if (above == x_.begin()) return 0.0;
+    if (above == x_.end()) return sum_.back();
+    const auto i = static_cast<std::size_t>(above - x_.begin()) - 1;
+    const double t = x - x_[i];
+    const double slope = (depth_[i + 1] - depth_[i]) / (x_[i + 1] - x_[i]);
+    return sum_[i] + t * (depth_[i] + 0.5 * slope * t);
+  }
+
+ private:
+  const std::vector<double>&x_, &depth_;
+  std::vector<double> sum_;
+};
+
+}  // namespace
+
+std::string_view column_of(Quantity q) {
+  constexpr std::array<std::string_view, quantity_count> columns{
+      "front_m", "front_99_m", "height_m", "depth_m", "kinetic_J_per_m"};
+  return columns[static_cast<std::size_t>(q)];
+}
+
+std::string_view unit_of(Quantity q) { return q == Quantity::kinetic ? "J/m" : "m"; }
+
+VectorXd shares_of(const SweepRun& run, Quantity q, double bin) {
+  if (!is_curve(q)) return VectorXd::Constant(1, run.figure(column_of(q)));
+  if (q == Quantity::profile) {
+    const Volume volume(run.x_m, run.depth_m);
+    const auto bins = static_cast<Index>(std::lround(run.scene().domain[0] / bin));
+    VectorXd shares(bins);
+    for (Index i = 0; i < bins; ++i)
+      shares[i] = volume.left_of(static_cast<double>(i + 1) * bin) -
+                  volume.left_of(static_cast<double>(i) * bin);
+    return shares;
+  }
+  const std::vector<double>& energy = run.series.find(column_of(q))->second;
+  return run.scene().series_interval *
+         Eigen::Map<const VectorXd>(energy.data(), static_cast<Index>(energy.size()));
+}
+
+QuantityCurve curve_of(const VectorXd& shares, Quantity q, const mpm::Scene& scene, double bin) {
+  QuantityCurve curve;
+  const double width = q == Quantity::profile ? bin : scene.series_interval;
+  const double first = q == Quantity::profile ? 0.5 : 0.0;  // the middle of a column; rows from 0 s
+  for (Index i = 0; i < shares.size(); ++i) {
+    curve.x.push_back((static_cast<double>(i) + first) * width);
+    curve.y.push_back(shares[i] / width);
+  }
+  return curve;
+}
+
+double length_of(const mpm::Scene& scene) {
+  double area = 0.0;
+  for (const mpm::Body& body : scene.bodies)
+    area += body.disc ? M_PI * (std::pow(body.disc->radius, 2) - std::pow(body.disc->hole, 2))
+                      : body.size[0] * body.size[1];
+  return std::sqrt(area);
+}
+
+}  // namespace repose::app

@@ -1,0 +1,50 @@
+#pragma once
+/// \file
+/// What a collapse is asked for, and what one run says of it.
+
+#include <array>
+#include <string_view>
+
+#include <Eigen/Core>
+
+#include "app/mpm_sweep.hpp"
+
+namespace repose::app {
+
+enum class Quantity {
+  front,     ///< front_m at the end
+  front_99,  ///< front_99_m at the end
+  height,    ///< height_m at the end
+  profile,   ///< depth over x at the end
+  kinetic,   ///< kinetic energy over time
+};
+/// Their names, in the same order.
+constexpr std::array<std::string_view, 5> quantity_names{"front", "front_99", "height", "profile",
+                                                         "kinetic"};
+constexpr std::size_t quantity_count = quantity_names.size();
+constexpr std::string_view name_of(Quantity q) {
+  return quantity_names[static_cast<std::size_t>(q)];
+}
+/// Is it a curve rather than a number?
+constexpr bool is_curve(Quantity q) { return q == Quantity::profile || q == Quantity::kinetic; }
+/// "front_m", "m": the figure of summary.json that a number is, and its unit; a curve's column.
+std::string_view column_of(Quantity q);
+std::string_view unit_of(Quantity q);
+
+/// A run's quantity as shares (calibration/richardson.hpp), comparable between runs of one scene
+/// with any cells: a number as it is; a profile as the volumes [m³ per m] of columns of width `bin`
+/// [m]; the kinetic energy as energy times the time between rows [J s per m]. The run must be done.
+Eigen::VectorXd shares_of(const SweepRun& run, Quantity q, double bin);
+
+/// Places and heights of the curve that shares are: x [m] and depth [m], or time [s] and energy
+/// [J/m].
+struct QuantityCurve {
+  std::vector<double> x, y;
+};
+QuantityCurve curve_of(const Eigen::VectorXd& shares, Quantity q, const mpm::Scene& scene,
+                       double bin);
+
+/// √(area of the bodies) [m]: the length that cells are measured by.
+double length_of(const mpm::Scene& scene);
+
+}  // namespace repose::app
