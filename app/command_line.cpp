@@ -89,7 +89,8 @@ ExitCode parse_and_run(std::span<const char* const> arguments) {
   root.footer(examples);
   root.get_formatter()->column_width(32);
   const std::vector<Command> commands{add_run(root),   add_check(root), add_models(root),
-                                      add_point(root), add_chart(root), add_fit(root)};
+                                      add_point(root), add_chart(root), add_fit(root),
+                                      add_report(root)};
 
   if (arguments.size() < 2) {
     fmt::print(stderr, "{}", root.help());

@@ -242,6 +242,21 @@ Json fit_report(const FitFile& file, const calibration::Problem& problem, const 
   return j;
 }
 
+std::string predictions_csv(const FitFile& file, const calibration::Problem& problem,
+                            const FitResult& result) {
+  std::string text = "target,held_out,x_name,channel,x,measured,fitted\n";
+  for (std::size_t k = 0; k < file.targets.size(); ++k) {
+    const auto& t = file.targets[k];
+    const Eigen::MatrixXd simulated = problem.predict(k, result.best().z).simulated;
+    for (std::size_t c = 0; c < t.channels.size(); ++c)
+      for (Index i = 0; i < t.x.size(); ++i)
+        text += fmt::format("\"{}\",{},{},{},{},{},{}\n", t.name, t.held_out ? "yes" : "no",
+                            t.x_name, t.channels[c].name, t.x[i], t.channels[c].observed[i],
+                            simulated(i, static_cast<Index>(c)));
+  }
+  return text;
+}
+
 std::string fitted_toml(const FitFile& file, const FitResult& result) {
   const auto& u = result.uncertainty;
   const LawSpec law = fitted_law(file, u.values);

@@ -25,6 +25,10 @@ struct FitResult {
 nlohmann::ordered_json fit_report(const FitFile& file, const calibration::Problem& problem,
                                   const FitResult& result, const std::string& status);
 
+/// predictions.csv: measured and fitted value of every row that was compared or held out, in SI.
+std::string predictions_csv(const FitFile& file, const calibration::Problem& problem,
+                            const FitResult& result);
+
 /// fitted.toml: a [law] table that `repose point` and `repose run` take, intervals in comments.
 std::string fitted_toml(const FitFile& file, const FitResult& result);
 

@@ -22,11 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 19> outputs{
+constexpr std::array<std::string_view, 20> outputs{
     "summary.json", "checkpoint.h5", "series.csv", "profile.csv",   "curve.csv",
     "final.svg",    "curve.svg",     "fit.json",   "fitted.toml",   "fit.svg",
     "chart.csv",    "chart.svg",     "table.csv",  "error_map.csv", "error_map.svg",
-    "history.csv",  "history.svg",   "cost.svg",   "chart.json"};
+    "history.csv",  "history.svg",   "cost.svg",   "chart.json",    "predictions.csv"};
 
 /// NAME_00012.hdf or NAME.hdf.series, or a temporary of one of them.
 bool is_frame_file(std::string name) {

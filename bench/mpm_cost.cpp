@@ -42,8 +42,8 @@ std::optional<TransferKind> kind_of(std::string_view transfer) {
 //   G2P, per field read (1, keeps: 2)  8n² + 6n + 6(n − 1) + 4            174         106
 //   keep, velocity | affine            3 per component                   6|12        6|12
 //   move                               4                                    4           4
-//   strain and spin                    6                                    6           6
-//   ledger and signals                 34, viscous law 36                  34          34
+//   strain (ln(I + A)), spin, det(I + A)  25                               25          25
+//   ledger and signals                 46, viscous law 48                  46          46
 //
 // The grid: every tile hands 5 channels of 13 × 13 nodes to the nodes (one addition each), every
 // node takes 30 (velocities before and after forces, three sums of the ledger).
@@ -70,7 +70,7 @@ std::optional<Work> transfer_work(Kernel kernel, Transfer transfer, std::size_t 
                            (kind->keeps ? 6.0 : 0.0) + (kind->apart ? 12.0 : 0.0);
   const double used_tile = (mpm::block_nx + 5.0) * mpm::tile_rows;
   Work work;
-  work.flops = to_grid + from_grid + 4.0 + 6.0 + (viscous ? 36.0 : 34.0) +
+  work.flops = to_grid + from_grid + 4.0 + 25.0 + (viscous ? 48.0 : 46.0) +
                tiles_per_point * 5.0 * used_tile + node_blocks_per_point * 30.0 * mpm::block_nodes;
   const double s = static_cast<double>(states);
   const double points = (kind->affine ? 13.0 : 9.0) + (8.0 + s) + (13.0 + s) +

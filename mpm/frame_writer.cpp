@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
+#include "mpm/frame_reader.hpp"
 #include "mpm/vtkhdf.hpp"
 
 namespace repose::mpm {
@@ -35,16 +34,6 @@ std::string frame_name(const std::string& base_name, std::size_t number) {
   return base_name + "_" + digits + ".hdf";
 }
 
-Json read_series(const fs::path& path) {
-  std::ifstream in(path);
-  if (!in) throw IoError(path, "cannot read", errno);
-  try {
-    return Json::parse(in);
-  } catch (const Json::exception& error) {
-    throw IoError(path, std::string("not a series of frames: ") + error.what());
-  }
-}
-
 }  // namespace
 
 FrameWriter::FrameWriter(fs::path folder, std::string base_name)
@@ -60,22 +49,17 @@ FrameWriter FrameWriter::continued(fs::path folder, std::string base_name, doubl
   FrameWriter writer(std::move(folder), std::move(base_name));
   const fs::path path = writer.series_path();
   if (!fs::exists(path)) return writer;
-  const Json series = read_series(path);
   std::vector<Entry> later;
-  try {
-    for (const Json& entry : series.at("files")) {
-      Entry frame{entry.at("name"), entry.at("time")};
-      const std::string expected =
-          frame_name(writer.base_name_, writer.frames_.size() + later.size());
-      if (frame.file_name != expected)
-        throw IoError(path,
-                      "frame '" + frame.file_name + "' stands where '" + expected + "' belongs");
-      // Entries are numbered without gaps, so the first that is too late ends what can be kept.
-      const bool keep = later.empty() && frame.time_s <= last_time_s;
-      (keep ? writer.frames_ : later).push_back(std::move(frame));
-    }
-  } catch (const Json::exception& error) {
-    throw IoError(path, std::string("not a series of frames: ") + error.what());
+  for (FrameEntry& entry : read_frame_series(path)) {
+    Entry frame{std::move(entry.file_name), entry.time_s};
+    const std::string expected =
+        frame_name(writer.base_name_, writer.frames_.size() + later.size());
+    if (frame.file_name != expected)
+      throw IoError(path,
+                    "frame '" + frame.file_name + "' stands where '" + expected + "' belongs");
+    // Entries are numbered without gaps, so the first that is too late ends what can be kept.
+    const bool keep = later.empty() && frame.time_s <= last_time_s;
+    (keep ? writer.frames_ : later).push_back(std::move(frame));
   }
   writer.write_series(writer.frames_);
   for (const Entry& frame : later) {

@@ -244,7 +244,72 @@ std::string image_of(hid_t file) {
   return image;
 }
 
+/// Every component of a dataset as doubles, row by row; no values if it holds no numbers.
+struct Numbers {
+  std::size_t rows = 0, components = 1;
+  std::vector<double> values;
+};
+
+Numbers read_numbers(hid_t group, const std::string& name) {
+  const Handle set(H5Dopen2(group, name.c_str(), H5P_DEFAULT), H5Dclose, "find " + name);
+  const Handle type(H5Dget_type(set), H5Tclose, "read the type of " + name);
+  const H5T_class_t kind = H5Tget_class(type);
+  if (kind != H5T_FLOAT && kind != H5T_INTEGER) return {};
+  const Handle space(H5Dget_space(set), H5Sclose, "read the shape of " + name);
+  const int rank = H5Sget_simple_extent_ndims(space);
+  if (rank < 1 || rank > 2) return {};
+  std::array<hsize_t, 2> size{0, 1};
+  check(H5Sget_simple_extent_dims(space, size.data(), nullptr), "read the shape of " + name);
+  Numbers numbers{size[0], size[1], std::vector<double>(size[0] * size[1])};
+  check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.values.data()),
+        "read " + name);
+  return numbers;
+}
+
+std::vector<std::string> names_in(hid_t group) {
+  H5G_info_t info{};
+  check(H5Gget_info(group, &info), "list the fields");
+  std::vector<std::string> names;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    const auto name = [&](char* text, std::size_t size) {
+      const ssize_t length =
+          H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, text, size, H5P_DEFAULT);
+      if (length < 0) fail("list the fields");
+      return static_cast<std::size_t>(length);
+    };
+    std::string text(name(nullptr, 0), '\0');
+    name(text.data(), text.size() + 1);
+    names.push_back(std::move(text));
+  }
+  return names;
+}
+
 }  // namespace
+
+Frame read_vtkhdf(const std::filesystem::path& path) {
+  const SilentErrors silent;
+  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it");
+  const Handle root(H5Gopen2(file, "VTKHDF", H5P_DEFAULT), H5Gclose, "find VTKHDF");
+  Frame frame;
+  const Numbers points = read_numbers(root, "Points");
+  if (points.components != 3) throw std::runtime_error("its Points are not rows of x, y and z");
+  frame.points = points.rows;
+  frame.position_m = points.values;
+  const Handle fields(H5Gopen2(root, "PointData", H5P_DEFAULT), H5Gclose, "find PointData");
+  for (const std::string& name : names_in(fields)) {
+    Numbers numbers = read_numbers(fields, name);
+    if (numbers.values.empty()) continue;
+    if (numbers.rows != frame.points)
+      throw std::runtime_error("its field " + name + " has " + std::to_string(numbers.rows) +
+                               " values for " + std::to_string(frame.points) + " points");
+    frame.fields.push_back({name, numbers.components, std::move(numbers.values)});
+  }
+  const Handle whole(H5Gopen2(root, "FieldData", H5P_DEFAULT), H5Gclose, "find FieldData");
+  const Numbers time = read_numbers(whole, "TimeValue");
+  if (time.values.size() != 1) throw std::runtime_error("it has no single TimeValue");
+  frame.time_s = time.values.front();
+  return frame;
+}
 
 std::string vtkhdf_image(const FrameView& frame) {
   check_view(frame);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
+#include "mpm/frame_reader.hpp"
 #include "mpm/frame_writer.hpp"
 
 namespace repose::mpm {
@@ -13,5 +15,9 @@ namespace repose::mpm {
 /// Deterministic: no object times. Errors: std::invalid_argument as at FrameView;
 /// std::runtime_error with HDF5's own reason (in practice: out of memory).
 std::string vtkhdf_image(const FrameView& frame);
+
+/// Reads such a file back; read_frame() is the way to it.
+/// Errors: std::runtime_error with HDF5's own reason, or that it is no VTKHDF file of points.
+Frame read_vtkhdf(const std::filesystem::path& path);
 
 }  // namespace repose::mpm

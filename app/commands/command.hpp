@@ -46,5 +46,6 @@ Command add_models(CLI::App& root);
 Command add_point(CLI::App& root);
 Command add_fit(CLI::App& root);
 Command add_chart(CLI::App& root);
+Command add_report(CLI::App& root);
 
 }  // namespace repose::app

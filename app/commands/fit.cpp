@@ -103,6 +103,7 @@ class FitRun {
     Json report = fit_report(file_, problem_, result_, status);
     folder_.write_file("fit.json", report.dump(2) + "\n");
     folder_.write_file("fitted.toml", fitted_toml(file_, result_));
+    folder_.write_file("predictions.csv", predictions_csv(file_, problem_, result_));
     draw();
     write_summary(status, before, report);
     tell(status, usage().wall_s - before.wall_s);
@@ -284,8 +285,8 @@ Command add_fit(CLI::App& root) {
       "  repose fit FIT.toml --starts-from 0 --starts-to 32 -o shard0     one share of a campaign\n"
       "  repose fit FIT.toml --merge shard0 shard1 -o whole               all shares as one "
       "result\n"
-      "Writes fit.json, fitted.toml (a [law] table), fit.svg, fit_diagnostics.svg, starts.jsonl,\n"
-      "summary.json and input.toml.");
+      "Writes fit.json, fitted.toml (a [law] table), predictions.csv, fit.svg,\n"
+      "fit_diagnostics.svg, starts.jsonl, summary.json and input.toml.");
   const auto options = std::make_shared<CommonOptions>();
   options->seed = 1;
   const auto arguments = std::make_shared<FitArguments>();

@@ -1,0 +1,138 @@
+// `repose report` from the command to the browser: the page of small real results is loaded in
+// Chromium without a screen, which uses it (#self-test) and must not complain.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+/// "" if no Chromium is installed.
+std::string browser() {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    for (const char* const name : {"chromium", "chromium-browser", "google-chrome"})
+      if (const fs::path file = fs::path(folder) / name; ::access(file.c_str(), X_OK) == 0)
+        return file;
+  return "";
+}
+
+class ReportPageTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "repose-page-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    base_ = name;
+    std::ofstream(base_ / "tiny.toml") << tiny;
+  }
+  void TearDown() override { fs::remove_all(base_); }
+
+  /// A command line in base_; its outputs go to out_ and err_.
+  int shell(const std::string& line) {
+    const std::string all = "cd '" + base_.string() + "' && " + line + " > out 2> err";
+    const int status = std::system(all.c_str());
+    out_ = content_of(base_ / "out");
+    err_ = content_of(base_ / "err");
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int repose(const std::string& arguments) { return shell(REPOSE_COMMAND " " + arguments); }
+
+  /// What the page says after it has used itself in a window of that width.
+  std::string self_test(const std::string& page, int width) {
+    shell("timeout 60 '" + browser() +
+          "' --headless=new --no-sandbox --disable-gpu --user-data-dir=profile --window-size=" +
+          std::to_string(width) +
+          ",900 --virtual-time-budget=5000 --enable-logging=stderr --dump-dom 'file://" +
+          (base_ / page).string() + "#self-test'");
+    const std::string mark = "data-self-test=\"";
+    const std::size_t from = out_.find(mark);
+    if (from == out_.npos) return "no answer: " + err_;
+    return out_.substr(from + mark.size(), out_.find('"', from + mark.size()) - from - mark.size());
+  }
+
+  // 1000 steps of 128 points, five frames
+  static constexpr const char* tiny =
+      "[scene]\nend_time = 0.02\n"
+      "[domain]\nsize = [0.6, 0.3]\n"
+      "[[body]]\nsize = [0.1, 0.2]\n"
+      "law = { name = \"mu_i\", mu_0 = 0.38, mu_d = 0.57, I_0 = 0.28, d = 5e-3, rho_p = 2000, "
+      "rho_0 = 1300, K = 1e5 }\n"
+      "[grid]\nh = 0.025\n"
+      "[step]\ndt = 2e-5\n"
+      "[output]\nseries_interval = 0.001\nframe_interval = 0.005\n";
+  fs::path base_;
+  std::string out_, err_;
+};
+
+TEST_F(ReportPageTest, WorksInABrowser) {
+  if (browser().empty()) GTEST_SKIP() << "no Chromium here: scripts/packages check installs it";
+  ASSERT_EQ(repose("run tiny.toml --quiet -o 'a<b>&\"c\"'"), 0) << err_;
+  ASSERT_EQ(repose("run tiny.toml --quiet --set step.dt=4e-5 -o other"), 0) << err_;
+  fs::create_directories(base_ / "map");
+  std::ofstream(base_ / "map/summary.json")
+      << R"({"kind": "stability", "status": "failed", "reason": "</script><b>", "warnings": ["a < b"]})";
+  std::ofstream(base_ / "map/input.toml") << "# </script><script>throw 1</script>\n";
+  std::ofstream map(base_ / "map/map.csv");
+  map << "eps_v,eps_q,error,status\n";
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 4; ++j)
+      map << i << ',' << j << ',' << (i == j ? "nan" : "0.1") << ',' << (i < j ? "ok" : "\"a,b\"")
+          << '\n';
+  map.close();
+  ASSERT_EQ(repose("report 'a<b>&\"c\"' other map -o page.html"), 0) << err_;
+  EXPECT_EQ(out_, "page.html: 3 results, 0." + out_.substr(24, 1) + " MB; any browser opens it\n");
+  for (const int width : {390, 1280}) {
+    const std::string verdict = self_test("page.html", width);
+    EXPECT_EQ(verdict.substr(0, 7), "passed:") << verdict << "\nin " << width << " px";
+    EXPECT_NE(verdict.find(" 1 maps, 1 players"), verdict.npos) << verdict;
+    EXPECT_EQ(err_.find("CONSOLE"), err_.npos) << err_;
+  }
+}
+
+TEST_F(ReportPageTest, TheSameFoldersGiveTheSamePage) {
+  ASSERT_EQ(repose("run tiny.toml --quiet -o one"), 0) << err_;
+  ASSERT_EQ(repose("report one --quiet"), 0) << err_;
+  const std::string page = content_of(base_ / "results/report.html");
+  EXPECT_NE(page.find("\"path\""), 0u);
+  // what `results/*` gives the second time: the page itself is passed over, a folder given twice
+  // counts once
+  ASSERT_EQ(repose("report one ./one/ results/*"), 0) << err_;
+  EXPECT_NE(err_.find("results/report.html is a file, left out"), err_.npos) << err_;
+  EXPECT_EQ(content_of(base_ / "results/report.html"), page);
+  // nothing tells where the results lay
+  EXPECT_EQ(page.find(base_.string()), page.npos);
+}
+
+TEST_F(ReportPageTest, RefusesWithTheRightCode) {
+  EXPECT_EQ(repose("report none"), 4);
+  EXPECT_EQ(err_, "none: there is no such folder\n");
+  EXPECT_EQ(repose("report tiny.toml"), 2);
+  EXPECT_NE(err_.find("takes result folders, and none is given"), err_.npos) << err_;
+  EXPECT_EQ(repose("report"), 2);
+  fs::create_directories(base_ / "empty");
+  EXPECT_EQ(repose("report empty"), 2);
+  EXPECT_EQ(err_, "empty: is not a result folder: it has no summary.json\n");
+  fs::create_directories(base_ / "ok");
+  std::ofstream(base_ / "ok/summary.json") << "{}";
+  EXPECT_EQ(repose("report ok -o empty"), 2);
+  EXPECT_EQ(err_, "-o empty: is a folder; give the page a name: -o empty/report.html\n");
+  EXPECT_EQ(repose("report ok -o tiny.toml/page.html"), 4);
+  EXPECT_EQ(repose("report --help"), 0);
+  EXPECT_NE(out_.find("\n  repose report results/"), out_.npos);
+}
+
+}  // namespace
