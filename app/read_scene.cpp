@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -72,13 +73,26 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
 }
 
 void read_domain(TomlReader table, mpm::Scene& scene) {
-  scene.domain = table.pair({"size", "m", "width and height of the box", positive, {}});
+  const toml::node* const size = table.get("size");
+  const bool space = size != nullptr && size->is_array() && size->as_array()->size() == 3;
+  scene.domain =
+      table.vector({"size",
+                    "m",
+                    space ? "width, height and depth of the box" : "width and height of the box",
+                    positive,
+                    {}},
+                   space ? 3 : 2);
+  if (std::isnan(scene.domain[2])) scene.domain[2] = 1.0;  // reported; still a scene in space
   scene.floor = read_wall(table, "floor", scene.floor);
   const Wall walls = read_wall(table, "walls", scene.left);
   scene.left = read_wall(table, "left", walls);
   scene.right = read_wall(table, "right", walls);
   // periodic walls are those across the flow; the top is then left as it is by default
   scene.top = read_wall(table, "top", walls.kind == Wall::Kind::periodic ? scene.top : walls);
+  if (scene.dimensions() == 3) {
+    scene.near = read_wall(table, "near", walls);
+    scene.far = read_wall(table, "far", walls);
+  }
 }
 
 void read_initial(TomlReader table, mpm::Body& body) {
@@ -98,20 +112,32 @@ void read_initial(TomlReader table, mpm::Body& body) {
   body.lithostatic = table.boolean("lithostatic", false);
 }
 
-mpm::Body read_body(TomlReader table, std::size_t position) {
+mpm::Body read_body(TomlReader table, std::size_t position, std::size_t axes) {
   mpm::Body body;
   body.name = table.text("name", "a name for messages", fmt::format("body{}", position));
-  if (table.choice("shape", {"box", "disc"}, 0) == 0) {
-    body.origin = table.pair({"origin", "m", "lower left corner", {}, {}}, std::array{0.0, 0.0});
-    body.size = table.pair({"size", "m", "width and height", positive, {}});
+  const bool space = axes == 3;
+  if (table.choice("shape", {"box", space ? "cylinder" : "disc"}, 0) == 0) {
+    body.origin =
+        table.vector({"origin", "m", "lower left corner", {}, {}}, axes, std::array{0.0, 0.0, 0.0});
+    body.size = table.vector(
+        {"size", "m", space ? "width, height and depth" : "width and height", positive, {}}, axes);
   } else {
     mpm::Disc disc;
-    disc.centre = table.pair({"centre", "m", "of the disc", {}, {}});
-    disc.radius = table.number({"radius", "m", "of the disc", positive, {}});
-    disc.hole = table.number({"hole", "m", "radius of the disc's hole", not_negative, 0.0});
-    set_disc(body, disc);
+    disc.centre = table.pair(
+        {"centre", "m", space ? "x and z of the cylinder's axis" : "of the disc", {}, {}});
+    disc.radius =
+        table.number({"radius", "m", space ? "of the cylinder" : "of the disc", positive, {}});
+    disc.hole = table.number({"hole", "m", "radius of the hole", not_negative, 0.0});
+    if (space) {
+      const double base = table.number({"base", "m", "y of the cylinder's base", {}, 0.0});
+      set_cylinder(body, disc, base,
+                   table.number({"height", "m", "of the cylinder", positive, {}}));
+    } else {
+      set_disc(body, disc);
+    }
   }
-  body.velocity = table.pair({"velocity", "m/s", "initial velocity", {}, {}}, std::array{0.0, 0.0});
+  body.velocity = table.vector({"velocity", "m/s", "initial velocity", {}, {}}, axes,
+                               std::array{0.0, 0.0, 0.0});
   body.spin = table.number({"spin", "rad/s", "initial angular velocity", {}, 0.0});
   read_initial(table.table("initial"), body);
   body.law = read_law(table.table("law"));
@@ -120,8 +146,11 @@ mpm::Body read_body(TomlReader table, std::size_t position) {
 
 void read_grid(TomlReader table, mpm::Scene& scene) {
   scene.h = table.number({"h", "m", "cell size", positive, {}});
+  const bool space = scene.dimensions() == 3;
+  if (space) scene.points_per_cell = 8;
   scene.points_per_cell = static_cast<int>(table.integer(
-      "points_per_cell", "a square number: 1, 4, 9, 16", 1, 100, scene.points_per_cell));
+      "points_per_cell", space ? "a cube number: 1, 8, 27" : "a square number: 1, 4, 9, 16", 1, 100,
+      scene.points_per_cell));
   scene.kernel = static_cast<mpm::Kernel>(
       table.choice("kernel", {mpm::kernel_names.begin(), mpm::kernel_names.end()},
                    static_cast<std::size_t>(scene.kernel)));
@@ -163,6 +192,10 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   scene.sleep_speed = table.number({"sleep_speed", "m/s",
                                     "blocks whose points are slower come to sleep, 0 for none",
                                     not_negative, scene.sleep_speed});
+  // A fluid's point alone, and the bulk of all, lose √(2/3) of their step with the third direction
+  // (step_size.hpp).
+  if (scene.dimensions() == 3) scene.courant = 0.65;
+  const double default_courant = scene.courant;
   scene.courant =
       table.number({"courant", "-", "share of the stable step", mpm::courant_range, scene.courant});
   scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});
@@ -175,7 +208,7 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   else if (courant_set)
     scene.dt.reset();
   else
-    scene.courant = mpm::Scene{}.courant;
+    scene.courant = default_courant;
 }
 
 PictureField read_output(TomlReader table, mpm::Scene& scene) {
@@ -198,7 +231,7 @@ SceneFile read_scene(InputFile& file) {
   read_general(root.table("scene"), scene);
   read_domain(root.table("domain"), scene);
   for (const TomlReader& table : root.tables("body", "a block of material"))
-    scene.bodies.push_back(read_body(table, scene.bodies.size()));
+    scene.bodies.push_back(read_body(table, scene.bodies.size(), scene.dimensions()));
   read_grid(root.table("grid"), scene);
   read_step(root.table("step"), scene);
   result.colour = read_output(root.table("output"), scene);

@@ -36,6 +36,11 @@ std::string pair(const std::array<double, 2>& x) {
   return fmt::format("[{}, {}]", number(x[0]), number(x[1]));
 }
 
+std::string vector(const std::array<double, 3>& x, std::size_t axes) {
+  return axes == 2 ? pair({x[0], x[1]})
+                   : fmt::format("[{}, {}, {}]", number(x[0]), number(x[1]), number(x[2]));
+}
+
 std::string wall(const Wall& w) {
   switch (w.kind) {
     case Wall::Kind::no_slip:
@@ -63,13 +68,17 @@ std::string line(std::string_view key, std::string_view value, std::string_view 
   return comment.empty() ? text + "\n" : fmt::format("{:<27} # {}\n", text, comment);
 }
 
-std::string shape_lines(const mpm::Body& body) {
+std::string shape_lines(const mpm::Body& body, std::size_t axes) {
   if (!body.disc)
-    return line("shape", toml_string("box")) + line("origin", pair(body.origin), "m") +
-           line("size", pair(body.size), "m");
-  return line("shape", toml_string("disc")) + line("centre", pair(body.disc->centre), "m") +
+    return line("shape", toml_string("box")) + line("origin", vector(body.origin, axes), "m") +
+           line("size", vector(body.size, axes), "m");
+  return line("shape", toml_string(axes == 2 ? "disc" : "cylinder")) +
+         line("centre", pair(body.disc->centre), axes == 2 ? "m" : "m, x and z") +
          line("radius", number(body.disc->radius), "m") +
-         line("hole", number(body.disc->hole), "m, radius of the hole");
+         line("hole", number(body.disc->hole), "m, radius of the hole") +
+         (axes == 2 ? ""
+                    : line("base", number(body.origin[1]), "m") +
+                          line("height", number(body.size[1]), "m"));
 }
 
 std::string initial_table(const mpm::Body& body) {
@@ -132,6 +141,7 @@ std::string law_table(const LawSpec& spec, std::string_view table) {
 
 std::string resolved_input(const SceneFile& file, const std::string& origin) {
   const mpm::Scene& scene = file.scene;
+  const std::size_t axes = scene.dimensions();
   std::string out = fmt::format(
       "# The input of this result with every default written out, by repose {}.\n# {}\n",
       version_string, origin);
@@ -139,12 +149,14 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
          line("end_time", number(scene.end_time), "s") +
          line("gravity", number(scene.gravity), "m/s²") +
          line("tilt_deg", number(scene.tilt_deg), "°, towards +x");
-  out += "\n[domain]\n" + line("size", pair(scene.domain), "m") + line("floor", wall(scene.floor)) +
-         line("left", wall(scene.left)) + line("right", wall(scene.right)) +
-         line("top", wall(scene.top));
+  out += "\n[domain]\n" + line("size", vector(scene.domain, axes), "m") +
+         line("floor", wall(scene.floor)) + line("left", wall(scene.left)) +
+         line("right", wall(scene.right)) + line("top", wall(scene.top)) +
+         (axes == 2 ? "" : line("near", wall(scene.near)) + line("far", wall(scene.far)));
   for (const mpm::Body& body : scene.bodies) {
-    out += "\n[[body]]\n" + line("name", toml_string(body.name)) + shape_lines(body) +
-           line("velocity", pair(body.velocity), "m/s") + line("spin", number(body.spin), "rad/s");
+    out += "\n[[body]]\n" + line("name", toml_string(body.name)) + shape_lines(body, axes) +
+           line("velocity", vector(body.velocity, axes), "m/s") +
+           line("spin", number(body.spin), "rad/s");
     out += initial_table(body) + law_table(body.law, "body.law");
   }
   out += "\n[grid]\n" + line("h", number(scene.h), "m") +

@@ -37,56 +37,72 @@ Json to_json(const toml::node& node) {
   return {};
 }
 
-}  // namespace
-
-std::vector<std::string> series_columns() {
-  return {"time_s",
-          "step",
-          "dt_s",
-          "front_m",
-          "front_max_m",
-          "height_m",
-          "kinetic_J_per_m",
-          "potential_J_per_m",
-          "elastic_J_per_m",
-          "dissipated_J_per_m",
-          "mass_kg_per_m",
-          "momentum_x",
-          "momentum_y",
-          "density_min",
-          "density_max",
-          "points_separated",
-          "transfer_loss_J_per_m",
-          "wall_loss_J_per_m",
-          "energy_residual_J_per_m",
-          "outflow_kg_per_m",
-          "angular_momentum",
-          "front_99_m"};
+/// What the plane has per metre of depth is whole in space: kinetic_J_per_m, kinetic_J.
+std::string named(std::string name, std::size_t dimensions) {
+  const std::string_view per_metre = "_per_m";
+  if (dimensions == 3 && name.ends_with(per_metre)) name.resize(name.size() - per_metre.size());
+  return name;
 }
 
-std::vector<double> series_values(const mpm::SeriesRow& row) {
-  return {row.time_s,
-          static_cast<double>(row.step),
-          row.dt_s,
-          row.front_m,
-          row.front_max_m,
-          row.height_m,
-          row.kinetic_J_per_m,
-          row.potential_J_per_m,
-          row.elastic_J_per_m,
-          row.dissipated_J_per_m,
-          row.mass_kg_per_m,
-          row.momentum_x,
-          row.momentum_y,
-          row.density_min,
-          row.density_max,
-          static_cast<double>(row.points_separated),
-          row.transfer_loss_J_per_m,
-          row.wall_loss_J_per_m,
-          row.energy_residual_J_per_m,
-          row.outflow_kg_per_m,
-          row.angular_momentum,
-          row.front_99_m};
+}  // namespace
+
+std::vector<std::string> series_columns(std::size_t dimensions) {
+  std::vector<std::string> columns{"time_s",
+                                   "step",
+                                   "dt_s",
+                                   "front_m",
+                                   "front_max_m",
+                                   "height_m",
+                                   "kinetic_J_per_m",
+                                   "potential_J_per_m",
+                                   "elastic_J_per_m",
+                                   "dissipated_J_per_m",
+                                   "mass_kg_per_m",
+                                   "momentum_x",
+                                   "momentum_y",
+                                   "density_min",
+                                   "density_max",
+                                   "points_separated",
+                                   "transfer_loss_J_per_m",
+                                   "wall_loss_J_per_m",
+                                   "energy_residual_J_per_m",
+                                   "outflow_kg_per_m",
+                                   "angular_momentum",
+                                   "front_99_m"};
+  if (dimensions == 2) return columns;
+  for (std::string& column : columns) column = named(column, dimensions);
+  for (std::string& column : columns)
+    if (column == "angular_momentum") column += "_z";
+  columns.insert(columns.end(), {"angular_momentum_x", "angular_momentum_y", "momentum_z"});
+  return columns;
+}
+
+std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensions) {
+  std::vector<double> values{row.time_s,
+                             static_cast<double>(row.step),
+                             row.dt_s,
+                             row.front_m,
+                             row.front_max_m,
+                             row.height_m,
+                             row.kinetic_J_per_m,
+                             row.potential_J_per_m,
+                             row.elastic_J_per_m,
+                             row.dissipated_J_per_m,
+                             row.mass_kg_per_m,
+                             row.momentum_x,
+                             row.momentum_y,
+                             row.density_min,
+                             row.density_max,
+                             static_cast<double>(row.points_separated),
+                             row.transfer_loss_J_per_m,
+                             row.wall_loss_J_per_m,
+                             row.energy_residual_J_per_m,
+                             row.outflow_kg_per_m,
+                             row.angular_momentum,
+                             row.front_99_m};
+  if (dimensions == 3)
+    values.insert(values.end(), {row.angular_momentum_x, row.angular_momentum_y, row.momentum_z});
+  return values;
 }
 
 Usage usage() {
@@ -98,7 +114,9 @@ Usage usage() {
           static_cast<double>(self.ru_maxrss) * 1024.0 / 1e6};  // ru_maxrss counts KiB
 }
 
-RunRecord::RunRecord(const mpm::Simulation& start) : initial_points(start.point_count()) {
+RunRecord::RunRecord(const mpm::Simulation& start)
+    : dimensions(start.scene().dimensions()),
+      initial_points(start.point_count()) {
   const mpm::SeriesRow row = start.diagnostics();
   initial_potential_J_per_m = row.potential_J_per_m;
   initial_mass_kg_per_m = row.mass_kg_per_m;
@@ -115,7 +133,8 @@ void RunRecord::continue_from(const std::filesystem::path& summary) {
   if (!in) throw IoError(summary, "cannot read what the interrupted run noted", errno);
   try {
     const Json noted = Json::parse(in);
-    peak_kinetic_J_per_m = std::max(peak_kinetic_J_per_m, double{noted.at("peak_kinetic_J_per_m")});
+    peak_kinetic_J_per_m =
+        std::max(peak_kinetic_J_per_m, double{noted.at(named("peak_kinetic_J_per_m", dimensions))});
     wall_s = noted.at("wall_s");
     cpu_s = noted.at("cpu_s");
     sessions = int{noted.at("sessions")} + 1;
@@ -153,6 +172,7 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   const mpm::Simulation::Counters counters = simulation.counters();
   const double wall = record.wall_s + spent.wall_s;
   Json s;
+  const auto put = [&](const char* name, double x) { s[named(name, record.dimensions)] = x; };
   s["repose"] = version_string;
   s["status"] = facts.status;
   if (!facts.reason.empty()) s["reason"] = facts.reason;
@@ -171,19 +191,19 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["density_min"] = last.density_min;
   s["density_max"] = last.density_max;
   s["points_separated"] = last.points_separated;
-  s["mass_kg_per_m"] = last.mass_kg_per_m;
+  put("mass_kg_per_m", last.mass_kg_per_m);
   s["mass_error"] =
       (last.mass_kg_per_m + last.outflow_kg_per_m) / record.initial_mass_kg_per_m - 1.0;
-  s["outflow_kg_per_m"] = last.outflow_kg_per_m;
-  s["kinetic_J_per_m"] = last.kinetic_J_per_m;
-  s["peak_kinetic_J_per_m"] = record.peak_kinetic_J_per_m;
-  s["potential_drop_J_per_m"] = record.initial_potential_J_per_m - last.potential_J_per_m;
+  put("outflow_kg_per_m", last.outflow_kg_per_m);
+  put("kinetic_J_per_m", last.kinetic_J_per_m);
+  put("peak_kinetic_J_per_m", record.peak_kinetic_J_per_m);
+  put("potential_drop_J_per_m", record.initial_potential_J_per_m - last.potential_J_per_m);
   s["angular_momentum"] = last.angular_momentum;
-  s["elastic_J_per_m"] = last.elastic_J_per_m;
-  s["dissipated_J_per_m"] = last.dissipated_J_per_m;
-  s["transfer_loss_J_per_m"] = last.transfer_loss_J_per_m;
-  s["wall_loss_J_per_m"] = last.wall_loss_J_per_m;
-  s["energy_residual_J_per_m"] = last.energy_residual_J_per_m;
+  put("elastic_J_per_m", last.elastic_J_per_m);
+  put("dissipated_J_per_m", last.dissipated_J_per_m);
+  put("transfer_loss_J_per_m", last.transfer_loss_J_per_m);
+  put("wall_loss_J_per_m", last.wall_loss_J_per_m);
+  put("energy_residual_J_per_m", last.energy_residual_J_per_m);
   s["energy_error"] = record.energy_error(last);
   s["wall_s"] = wall;
   s["cpu_s"] = record.cpu_s + spent.cpu_s;

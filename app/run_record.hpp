@@ -11,9 +11,10 @@
 
 namespace repose::app {
 
-/// The columns of series.csv, in order, and the values of a row.
-std::vector<std::string> series_columns();
-std::vector<double> series_values(const mpm::SeriesRow& row);
+/// The columns of series.csv, in order, and the values of a row, for a scene in the plane or in
+/// space.
+std::vector<std::string> series_columns(std::size_t dimensions);
+std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensions);
 
 /// Resources used by the process so far.
 struct Usage {
@@ -25,6 +26,7 @@ Usage usage();
 
 /// Figures of a run that no single moment tells; carried through a resumption by summary.json.
 struct RunRecord {
+  std::size_t dimensions = 2;
   double initial_potential_J_per_m = 0.0;
   double initial_mass_kg_per_m = 0.0;
   double peak_kinetic_J_per_m = 0.0;  ///< over the rows of the series

@@ -119,7 +119,8 @@ void Run::start() {
                             folder_.path().string()));
   folder_.remove_old_outputs();
   folder_.write_file("input.toml", request_.input);
-  series_.emplace(RowWriter::create(folder_.file("series.csv"), series_columns()));
+  series_.emplace(
+      RowWriter::create(folder_.file("series.csv"), series_columns(scene_.dimensions())));
   if (scene_.frame_interval > 0.0) frames_.emplace(folder_.frames(), scene_.name);
   voice_.event({{"event", "start"},
                 {"name", scene_.name},
@@ -134,7 +135,8 @@ void Run::resume() {
   record_.continue_from(folder_.file("summary.json"));
   simulation_.load(folder_.checkpoint());
   const double time = simulation_.time();
-  series_.emplace(RowWriter::continued(folder_.file("series.csv"), series_columns(), time));
+  series_.emplace(
+      RowWriter::continued(folder_.file("series.csv"), series_columns(scene_.dimensions()), time));
   if (scene_.frame_interval > 0.0)
     frames_ = mpm::FrameWriter::continued(folder_.frames(), scene_.name, time);
   voice_.event({{"event", "resume"},
@@ -186,11 +188,11 @@ void Run::write_due() {
   if (schedule_.row_due(time)) {
     const mpm::SeriesRow row = simulation_.diagnostics();
     record_.include(row);
-    for (const double x : series_values(row))
+    for (const double x : series_values(row, scene_.dimensions()))
       if (!std::isfinite(x))
         throw mpm::NumericalFailure(fmt::format(
             "step {} at t = {:.6g} s: a figure of the series is not finite", row.step, time));
-    series_->row(series_values(row));
+    series_->row(series_values(row, scene_.dimensions()));
   }
   if (frames_ && schedule_.frame_due(time)) write_frame();
 }
@@ -210,13 +212,21 @@ void Run::write_profile() const {
 
 /// Whether there is one: a picture is never worth a run.
 bool Run::write_picture() {
-  const mpm::Simulation::Snapshot shot = simulation_.snapshot();
+  mpm::Simulation::Snapshot shot = simulation_.snapshot();
+  std::string title = fmt::format("{} at {:.4g} s", scene_.name, simulation_.time());
+  if (scene_.dimensions() == 3) {
+    // the cells along z = 0, or the middle of the box where that is no plane of symmetry
+    const double z = scene_.near.kind == mpm::Wall::Kind::slip ? 0.0 : 0.5 * scene_.domain[2];
+    shot = shot.slice(z, z + scene_.h);
+    title += fmt::format(", z = {:.4g} to {:.4g} m", z, z + scene_.h);
+    if (shot.x_m.empty()) return false;
+  }
   const bool mises = request_.file.colour == PictureField::mises;
   std::vector<double> values = mises ? shot.mises_Pa : shot.density;
   if (mises)
     for (double& x : values) x *= 1e-3;
   HeapPicture picture;
-  picture.title = fmt::format("{} at {:.4g} s", scene_.name, simulation_.time());
+  picture.title = title;
   picture.width_m = scene_.domain[0];
   picture.height_m = scene_.domain[1];
   picture.x_m = shot.x_m;
@@ -286,11 +296,12 @@ ExitCode Run::finish() {
   if (frames_) files += fmt::format(", frames/{}", frames_->series_path().filename().string());
   voice_.say(fmt::format(
       "{}: done in {}, {} steps, {:.1f} Mpoint-steps/s\n"
-      "  front {:.4g} m, height {:.4g} m, kinetic energy {:.2g} J/m, energy error {:.2g} %\n"
+      "  front {:.4g} m, height {:.4g} m, kinetic energy {:.2g} {}, energy error {:.2g} %\n"
       "  {}: {}\n",
       scene_.name, duration_text(wall), last.step,
       static_cast<double>(simulation_.point_steps()) / wall / 1e6, last.front_m, last.height_m,
-      last.kinetic_J_per_m, 100.0 * record_.energy_error(last), folder_.path().string(), files));
+      last.kinetic_J_per_m, scene_.dimensions() == 2 ? "J/m" : "J",
+      100.0 * record_.energy_error(last), folder_.path().string(), files));
   return ExitCode::done;
 }
 

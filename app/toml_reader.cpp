@@ -209,13 +209,25 @@ std::optional<std::vector<double>> TomlReader::numbers(const NumberKey& key, std
 
 std::array<double, 2> TomlReader::pair(const NumberKey& key,
                                        std::optional<std::array<double, 2>> fallback) {
+  std::optional<std::array<double, 3>> there;
+  if (fallback) there = {(*fallback)[0], (*fallback)[1], 0.0};
+  const std::array<double, 3> read = vector(key, 2, there);
+  return {read[0], read[1]};
+}
+
+std::array<double, 3> TomlReader::vector(const NumberKey& key, std::size_t axes,
+                                         std::optional<std::array<double, 3>> fallback) {
+  std::array<double, 3> read{nan, nan, axes == 2 ? 0.0 : nan};
   if (!has(key.key)) {
     expect(key.key);
-    if (!fallback) missing(key.key, fmt::format("[x, y] in {}{}", key.unit, doc_of(key.doc)));
-    return fallback.value_or(std::array{nan, nan});
+    if (!fallback)
+      missing(key.key, fmt::format("{} in {}{}", axes == 2 ? "[x, y]" : "[x, y, z]", key.unit,
+                                   doc_of(key.doc)));
+    return fallback.value_or(read);
   }
-  const auto values = numbers(key, 2);
-  return values ? std::array{(*values)[0], (*values)[1]} : std::array{nan, nan};
+  if (const auto values = numbers(key, axes))
+    std::copy(values->begin(), values->end(), read.begin());
+  return read;
 }
 
 TomlReader TomlReader::table(std::string_view key) {

@@ -49,6 +49,9 @@ class TomlReader {
   /// [x, y], each in the key's range.
   std::array<double, 2> pair(const NumberKey& key,
                              std::optional<std::array<double, 2>> fallback = {});
+  /// [x, y], or with three axes [x, y, z], each in the key's range; z = 0 where there is none.
+  std::array<double, 3> vector(const NumberKey& key, std::size_t axes,
+                               std::optional<std::array<double, 3>> fallback = {});
   /// A list of at least one finite number.
   std::optional<std::vector<double>> number_list(const NumberKey& key);
   /// A list of at least one of several words, as their positions.

@@ -37,7 +37,7 @@ struct Points {
       b.stress[k] = stress[k].data();
       if (k < states) b.state[k] = state[k].data();
     }
-    b.spin = spin.data();
+    b.spin = {spin.data()};
     b.density = density.data();
     return b;
   }

@@ -29,7 +29,7 @@ class Lattice {
   std::int64_t id(std::int64_t i, std::int64_t j) const { return j * size_[0] + i; }
 
  private:
-  std::array<std::int64_t, 2> size_;
+  std::array<std::int64_t, 3> size_;
 };
 
 }  // namespace
@@ -71,8 +71,8 @@ MidCollapse::MidCollapse(Scene scene, Kernel kernel, Transfer transfer, int divi
     Simulation simulation(first, 1);
     while (simulation.time() < moment) simulation.step(moment);
     Coarse& coarse = coarse_runs()[scene.name];
-    coarse.points = simulation.impl_->bodies.at(0);
-    coarse.signals = simulation.impl_->signals;
+    coarse.points = simulation.plane_->bodies.at(0);
+    coarse.signals = simulation.plane_->signals;
     coarse.slot.resize(coarse.points.count);
     for (std::size_t s = 0; s < coarse.points.slots(); ++s)
       if (coarse.points.id[s] >= 0) coarse.slot[static_cast<std::size_t>(coarse.points.id[s])] = s;
@@ -84,7 +84,7 @@ MidCollapse::MidCollapse(Scene scene, Kernel kernel, Transfer transfer, int divi
   scene.kernel = kernel;
   scene.transfer = transfer;
   now_ = std::make_unique<State>(scene, threads);
-  Simulation::Impl& fine = *now_->simulation.impl_;
+  Simulation::Impl<2>& fine = *now_->simulation.plane_;
   const Lattice children(scene, scene.bodies.at(0));
   PointSet& points = fine.bodies.at(0);
   const double spacing = point_spacing(scene);
@@ -124,7 +124,7 @@ MidCollapse::~MidCollapse() = default;
 void MidCollapse::step() { now_->simulation.step(HUGE_VAL); }
 
 void MidCollapse::restore() {
-  Simulation::Impl& s = *now_->simulation.impl_;
+  Simulation::Impl<2>& s = *now_->simulation.plane_;
   const Saved& saved = *now_->saved;
   s.bodies = saved.bodies;
   s.grid = saved.grid;
@@ -144,16 +144,16 @@ std::int64_t MidCollapse::sorts() const {
 }
 double MidCollapse::bytes() const { return 1e6 * now_->simulation.counters().memory_MB; }
 double MidCollapse::tiles_per_point() const {
-  return static_cast<double>(now_->simulation.impl_->grid.point_blocks.size()) /
+  return static_cast<double>(now_->simulation.plane_->grid.point_blocks.size()) /
          static_cast<double>(points());
 }
 double MidCollapse::node_blocks_per_point() const {
-  return static_cast<double>(now_->simulation.impl_->grid.node_blocks.size()) /
+  return static_cast<double>(now_->simulation.plane_->grid.node_blocks.size()) /
          static_cast<double>(points());
 }
 
 MidCollapse::Sample MidCollapse::sample(std::size_t most) const {
-  const PointSet& points = now_->simulation.impl_->bodies.at(0);
+  const PointSet& points = now_->simulation.plane_->bodies.at(0);
   Sample sample;
   sample.dt = now_->simulation.next_dt();
   const std::size_t stride = std::max<std::size_t>(1, points.slots() / most);

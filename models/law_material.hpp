@@ -30,28 +30,19 @@ class LawMaterial final : public Material {
   const LawInfo& law() const override { return info(); }
   const typename L::template Params<double>& params() const { return plain_; }
 
-  UpdateReport update(const Batch& batch) const override {
-    UpdateReport report;
-    using T = std::conditional_t<L::iterates, Twin, Pack>;
-    const auto P = parameters<T>();  // no store can alias it, so that it may stay in registers
-    for (std::size_t i = 0; i < batch.count; i += T::size) update<T>(P, batch, i, report);
-    return report;
-  }
+  UpdateReport update(const Batch& batch) const override { return update_all(batch); }
+  UpdateReport update(const SpatialBatch& batch) const override { return update_all(batch); }
 
   void stored_energy(const Batch& batch, double* energy) const override {
-    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
-      const auto point = load_point<Pack>(batch, i);
-      L::stored_energy(packed_, point.stress, point.state, load<Pack>(batch.density + i))
-          .store_unaligned(energy + i);
-    }
+    store_energy(batch, energy);
+  }
+  void stored_energy(const SpatialBatch& batch, double* energy) const override {
+    store_energy(batch, energy);
   }
 
-  void modulus(const Batch& batch, double* rho_c2) const override {
-    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
-      const auto point = load_point<Pack>(batch, i);
-      L::modulus(packed_, point.stress, point.state, load<Pack>(batch.density + i))
-          .store_unaligned(rho_c2 + i);
-    }
+  void modulus(const Batch& batch, double* rho_c2) const override { store_modulus(batch, rho_c2); }
+  void modulus(const SpatialBatch& batch, double* rho_c2) const override {
+    store_modulus(batch, rho_c2);
   }
 
   void elastic_volume_strain(const Batch& batch, double* strain) const override {
@@ -89,11 +80,38 @@ class LawMaterial final : public Material {
   double density_at(double p, double ocr) const override { return L::density_at(plain_, p, ocr); }
 
  private:
-  template <class T>
+  template <class T, int N>
   struct Point {
-    Sym<T, 4> stress;
+    Sym<T, N> stress;
     typename L::template State<T> state;
   };
+
+  template <int N>
+  UpdateReport update_all(const BatchOf<N>& batch) const {
+    UpdateReport report;
+    using T = std::conditional_t<L::iterates, Twin, Pack>;
+    const auto P = parameters<T>();  // no store can alias it, so that it may stay in registers
+    for (std::size_t i = 0; i < batch.count; i += T::size) update<T>(P, batch, i, report);
+    return report;
+  }
+
+  template <int N>
+  void store_energy(const BatchOf<N>& batch, double* energy) const {
+    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+      const auto point = load_point<Pack>(batch, i);
+      L::stored_energy(packed_, point.stress, point.state, load<Pack>(batch.density + i))
+          .store_unaligned(energy + i);
+    }
+  }
+
+  template <int N>
+  void store_modulus(const BatchOf<N>& batch, double* rho_c2) const {
+    for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+      const auto point = load_point<Pack>(batch, i);
+      L::modulus(packed_, point.stress, point.state, load<Pack>(batch.density + i))
+          .store_unaligned(rho_c2 + i);
+    }
+  }
 
   template <class T>
   typename L::template Params<T> parameters() const {
@@ -108,39 +126,45 @@ class LawMaterial final : public Material {
     return T::load_unaligned(from);
   }
 
-  template <class T>
-  static Point<T> load_point(const Batch& batch, std::size_t i) {
-    Point<T> point;
-    for (int k = 0; k < 4; ++k) point.stress[k] = load<T>(batch.stress[index(k)] + i);
+  template <class T, int N>
+  static Point<T, N> load_point(const BatchOf<N>& batch, std::size_t i) {
+    Point<T, N> point;
+    for (int k = 0; k < N; ++k) point.stress[k] = load<T>(batch.stress[index(k)] + i);
     for (std::size_t k = 0; k < L::state.size(); ++k) point.state[k] = load<T>(batch.state[k] + i);
     return point;
   }
 
   /// Updates the points i … i + T::size − 1 of a batch.
-  template <class T>
+  template <class T, int N>
   [[gnu::always_inline]] static void update(const typename L::template Params<T>& P,
-                                            const Batch& batch, std::size_t i,
+                                            const BatchOf<N>& batch, std::size_t i,
                                             UpdateReport& report) {
     using std::exp;
     const T zero(0.0);
-    Increment<T, 4> inc;
+    Increment<T, N> inc;
     inc.dt = T(batch.dt);
-    for (int k = 0; k < 4; ++k) inc.strain[k] = load<T>(batch.strain[index(k)] + i);
+    for (int k = 0; k < N; ++k) inc.strain[k] = load<T>(batch.strain[index(k)] + i);
     // ρ after the step: d ln ρ = −tr D dt, exact for a constant rate of logarithmic strain
     const T density_before = load<T>(batch.density + i);
     inc.density = density_before * exp(T(-trace(inc.strain)));
-    const Point<T> given = load_point<T>(batch, i);
-    Point<T> point = given;
-    if (batch.spin != nullptr)
-      point.stress = rotated_in_plane(point.stress, load<T>(batch.spin + i));
-    const Sym<T, 4> before = point.stress;
+    const Point<T, N> given = load_point<T>(batch, i);
+    Point<T, N> point = given;
+    if (batch.spin[0] != nullptr) {
+      if constexpr (N == 4)
+        point.stress = rotated_in_plane(point.stress, load<T>(batch.spin[0] + i));
+      else
+        point.stress = rotated(
+            point.stress,
+            {load<T>(batch.spin[0] + i), load<T>(batch.spin[1] + i), load<T>(batch.spin[2] + i)});
+    }
+    const Sym<T, N> before = point.stress;
     auto failed = L::update(P, inc, point.stress, point.state);
     failed = failed || !(inc.dt >= zero) || !(inc.density > zero) || !finite(inc.density) ||
              !finite(contract(before, before));
     T work = T(0.5) * contract(before + point.stress, inc.strain);
     if (any(failed)) {
       note_failure<T>(failed, i, batch.count, report);
-      for (int k = 0; k < 4; ++k) {
+      for (int k = 0; k < N; ++k) {
         point.stress[k] = select(failed, given.stress[k], point.stress[k]);
         inc.strain[k] = select(failed, zero, inc.strain[k]);
       }
@@ -149,7 +173,7 @@ class LawMaterial final : public Material {
       inc.density = select(failed, density_before, inc.density);
       work = select(failed, zero, work);
     }
-    for (int k = 0; k < 4; ++k) point.stress[k].store_unaligned(batch.stress[index(k)] + i);
+    for (int k = 0; k < N; ++k) point.stress[k].store_unaligned(batch.stress[index(k)] + i);
     for (std::size_t k = 0; k < L::state.size(); ++k)
       point.state[k].store_unaligned(batch.state[k] + i);
     inc.density.store_unaligned(batch.density + i);

@@ -11,20 +11,26 @@
 
 namespace repose {
 
-/// A run of material points in plane strain (4 tensor components: xx, yy, zz, xy). Every array has
-/// room for padded(count) entries, and the entries behind `count` hold copies of valid points.
-struct Batch {
+/// A run of material points with N tensor components (sym.hpp). Every array has room for
+/// padded(count) entries, and the entries behind `count` hold copies of valid points.
+template <int N>
+struct BatchOf {
+  static constexpr auto components = static_cast<std::size_t>(N);
   std::size_t count = 0;
-  double dt = 0.0;                        ///< [s]
-  std::array<const double*, 4> strain{};  ///< Δε = sym(L) Δt, tension positive
-  const double* spin = nullptr;           ///< rotation angle of the step [rad], or null for none
-  double* density = nullptr;        ///< in: at the start of the step; out: at its end [kg/m³]
-  std::array<double*, 4> stress{};  ///< Cauchy, tension positive [Pa]; updated in place
-  std::array<double*, 4> state{};   ///< state variables in table order; updated in place
-  double* modulus = nullptr;        ///< out, optional: ρc² [Pa]
-  double* viscosity = nullptr;      ///< out, optional: shear viscosity limiting the step [Pa s]
+  double dt = 0.0;                                 ///< [s]
+  std::array<const double*, components> strain{};  ///< Δε = sym(L) Δt, tension positive
+  /// The step's rotation vector, ½ rot v Δt: about z in plane strain, about x, y and z in three
+  /// dimensions [rad]; null for none
+  std::array<const double*, N == 4 ? 1 : 3> spin{};
+  double* density = nullptr;  ///< in: at the start of the step; out: its end [kg/m³]
+  std::array<double*, components> stress{};  ///< Cauchy, tension positive [Pa]; updated in place
+  std::array<double*, 4> state{};            ///< state variables in table order; updated in place
+  double* modulus = nullptr;                 ///< out, optional: ρc² [Pa]
+  double* viscosity = nullptr;  ///< out, optional: shear viscosity limiting the step [Pa s]
   double* work = nullptr;  ///< out, optional: ½(σ_n + σ_{n+1}):Δε, energy per mean volume [J/m³]
 };
+using Batch = BatchOf<4>;         ///< plane strain
+using SpatialBatch = BatchOf<6>;  ///< three dimensions
 
 /// Batches are processed in whole SIMD registers, at most two at a time.
 constexpr std::size_t pack_size = Twin::size;
@@ -66,12 +72,15 @@ class Material {
   /// that is not a number, a step beyond any stress) keeps its stress, state and density to the
   /// last bit, does no work, and is reported.
   virtual UpdateReport update(const Batch& batch) const = 0;
+  virtual UpdateReport update(const SpatialBatch& batch) const = 0;
 
   /// Recoverable energy per current volume of each point [J/m³].
   virtual void stored_energy(const Batch& batch, double* energy) const = 0;
+  virtual void stored_energy(const SpatialBatch& batch, double* energy) const = 0;
 
   /// ρc² [Pa] of each point as it is.
   virtual void modulus(const Batch& batch, double* rho_c2) const = 0;
+  virtual void modulus(const SpatialBatch& batch, double* rho_c2) const = 0;
 
   /// Elastic volume strain of each point, extension positive, −∫dp/K from where it carries no
   /// pressure [-]; 0 for one that carries none.

@@ -115,9 +115,10 @@ class Quiet {
 
 }  // namespace
 
-void Simulation::save(const std::filesystem::path& path) const {
+template <int dim>
+void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   const Quiet quiet;
-  const Impl& s = *impl_;
+  const Impl& s = *this;
   // assembled in memory, so that the disk sees one plain write that is whole or absent
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
   H5Pset_fapl_core(access, 1 << 20, false);
@@ -133,9 +134,8 @@ void Simulation::save(const std::filesystem::path& path) const {
   write(file, "wholes", wholes);
 
   std::vector<std::int64_t> blocks;
-  for (const PointBlock& pb : s.grid.point_blocks) {
-    blocks.push_back(pb.bx);
-    blocks.push_back(pb.by);
+  for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
+    blocks.insert(blocks.end(), pb.at.begin(), pb.at.end());
     for (const Range& range : pb.range) {
       blocks.push_back(static_cast<std::int64_t>(range.begin));
       blocks.push_back(static_cast<std::int64_t>(range.count));
@@ -145,7 +145,7 @@ void Simulation::save(const std::filesystem::path& path) const {
   // the rest of every block; and of those that sleep beside points awake, the push
   std::vector<double> rests;
   std::vector<double> pushes;
-  for (const PointBlock& pb : s.grid.point_blocks) {
+  for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
     const Rest& rest = pb.rest;
     rests.insert(
         rests.end(),
@@ -156,7 +156,7 @@ void Simulation::save(const std::filesystem::path& path) const {
   write(file, "rests", rests);
   write(file, "pushes", pushes);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    const PointSet& points = s.bodies[b];
+    const PointsOf<dim>& points = s.bodies[b];
     write(file, fmt::format("body{}_id", b), points.id);
     for (std::size_t f = 0; f < points.fields; ++f)
       write(file, fmt::format("body{}_field{}", b, f), points.field[f]);
@@ -170,9 +170,10 @@ void Simulation::save(const std::filesystem::path& path) const {
   write_atomically(path, image);
 }
 
-void Simulation::load(const std::filesystem::path& path) {
+template <int dim>
+void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
   const Quiet quiet;
-  Impl& s = *impl_;
+  Impl& s = *this;
   const auto reject = [&](const std::string& why) { throw IoError(path, why); };
   try {
     const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
@@ -192,7 +193,7 @@ void Simulation::load(const std::filesystem::path& path) {
         [&](std::int64_t& x) { x = wholes.at(next_whole++); });
 
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-      PointSet& points = s.bodies[b];
+      PointsOf<dim>& points = s.bodies[b];
       points.id = read<std::int64_t>(file, fmt::format("body{}_id", b));
       for (std::size_t f = 0; f < points.fields; ++f) {
         points.field[f] = read<double, AlignedVector<double>::allocator_type>(
@@ -204,16 +205,15 @@ void Simulation::load(const std::filesystem::path& path) {
     }
 
     const std::vector<std::int64_t> blocks = read<std::int64_t>(file, "blocks");
-    const std::size_t width = 2 + 2 * s.bodies.size();
+    const std::size_t width = dim + 2 * s.bodies.size();
     if (blocks.size() % width != 0) reject("it holds another number of bodies");
-    std::vector<PointBlock> restored(blocks.size() / width);
+    std::vector<PointBlockOf<dim>> restored(blocks.size() / width);
     for (std::size_t k = 0; k < restored.size(); ++k) {
       const std::int64_t* row = blocks.data() + k * width;
-      restored[k].bx = static_cast<int>(row[0]);
-      restored[k].by = static_cast<int>(row[1]);
+      for (std::size_t i = 0; i < dim; ++i) restored[k].at[i] = static_cast<int>(row[i]);
       for (std::size_t b = 0; b < s.bodies.size(); ++b)
-        restored[k].range.push_back(
-            {static_cast<std::size_t>(row[2 + 2 * b]), static_cast<std::size_t>(row[3 + 2 * b])});
+        restored[k].range.push_back({static_cast<std::size_t>(row[dim + 2 * b]),
+                                     static_cast<std::size_t>(row[dim + 2 * b + 1])});
     }
     const std::vector<double> rests = read<double>(file, "rests");
     const std::vector<double> pushes = read<double>(file, "pushes");
@@ -226,9 +226,10 @@ void Simulation::load(const std::filesystem::path& path) {
       rest.count = static_cast<std::size_t>(at(2));
       rest.signals = {at(3), at(4), at(5)};
       if (at(6) == 0.0) continue;
-      if (pushes.end() - push < 2 * tile_nodes) reject("its sleeping blocks are incomplete");
-      rest.push.assign(push, push + 2 * tile_nodes);
-      push += 2 * tile_nodes;
+      constexpr std::ptrdiff_t of_block = dim * Shape<dim>::tile_nodes;
+      if (pushes.end() - push < of_block) reject("its sleeping blocks are incomplete");
+      rest.push.assign(push, push + of_block);
+      push += of_block;
     }
     s.grid.restore(std::move(restored));
     s.mark_sleepers();
@@ -237,6 +238,13 @@ void Simulation::load(const std::filesystem::path& path) {
   } catch (const std::exception& e) {
     reject(e.what());
   }
+}
+
+void Simulation::save(const std::filesystem::path& path) const {
+  visit([&](const auto& s) { s.save(path); });
+}
+void Simulation::load(const std::filesystem::path& path) {
+  visit([&](auto& s) { s.load(path); });
 }
 
 }  // namespace repose::mpm

@@ -22,8 +22,8 @@ void through_points(const PointSet& points, const Range& range, double h, std::a
     const PackStencil<Kernel> stencil(x, y);
     Pack vx(0.0), vy(0.0);
     stencil.for_each_row([&](std::size_t row, const Pack& w, const Pack&) {
-      stencil.add(there.vx.data() + row * tile_stride, w, vx);
-      stencil.add(there.vy.data() + row * tile_stride, w, vy);
+      stencil.add(there.v[0].data() + row * tile_stride, w, vx);
+      stencil.add(there.v[1].data() + row * tile_stride, w, vy);
     });
     alignas(64) double px[Pack::size], py[Pack::size];
     alignas(64) double tx[Pack::size], ty[Pack::size], place[Pack::size];
@@ -59,7 +59,8 @@ template void through_points<CubicKernel>(const PointSet&, const Range&, double,
 template void through_points<QuadraticKernel>(const PointSet&, const Range&, double,
                                               std::array<int, 2>, const VelocityTile&, Tile&);
 
-void Simulation::Impl::extend_velocity() {
+template <>
+void Simulation::Impl<2>::extend_velocity() {
   const bool after_forces = scene.transfer == Transfer::fmpm;
   const std::size_t n = grid.node_blocks.size();
   remainder_.resize(n);
@@ -67,16 +68,16 @@ void Simulation::Impl::extend_velocity() {
   extension_.assign(n, NodeField{});
   for_each_block(arena, n, [&](std::size_t k) {
     const NodeBlock& nb = grid.node_blocks[k];
-    remainder_[k].x = after_forces ? nb.vx : nb.ux;
-    remainder_[k].y = after_forces ? nb.vy : nb.uy;
+    remainder_[k].x = after_forces ? nb.v[0] : nb.u[0];
+    remainder_[k].y = after_forces ? nb.v[1] : nb.u[1];
   });
   for (int pass = 1; pass < scene.order; ++pass) {
     // the tiles have given the nodes what they held (update_grid) and are free until the next P2G
     for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
       const PointBlock& pb = grid.point_blocks[k];
       VelocityTile there;
-      fill_tile(pb, there.vx, [&](std::size_t b) { return remainder_[b].x.data(); });
-      fill_tile(pb, there.vy, [&](std::size_t b) { return remainder_[b].y.data(); });
+      fill_tile(pb, there.v[0], [&](std::size_t b) { return remainder_[b].x.data(); });
+      fill_tile(pb, there.v[1], [&](std::size_t b) { return remainder_[b].y.data(); });
       Tile& back = grid.tiles[k];
       back[T_PX].fill(0.0);
       back[T_PY].fill(0.0);
@@ -114,15 +115,16 @@ void Simulation::Impl::extend_velocity() {
     NodeBlock& nb = grid.node_blocks[k];
     const NodeField& e = extension_[k];
     if (!after_forces) {
-      nb.ux = e.x;
-      nb.uy = e.y;
+      nb.u[0] = e.x;
+      nb.u[1] = e.y;
       return;
     }
     double work = 0.0;
     for (std::size_t i = 0; i < block_nodes; ++i) {
-      work += 0.5 * nb.mass[i] * ((nb.vx[i] - nb.ux[i]) * e.x[i] + (nb.vy[i] - nb.uy[i]) * e.y[i]);
-      nb.vx[i] += e.x[i];
-      nb.vy[i] += e.y[i];
+      work += 0.5 * nb.mass[i] *
+              ((nb.v[0][i] - nb.u[0][i]) * e.x[i] + (nb.v[1][i] - nb.u[1][i]) * e.y[i]);
+      nb.v[0][i] += e.x[i];
+      nb.v[1][i] += e.y[i];
     }
     node_sums_[k].extension_work = work;
   });

@@ -16,38 +16,44 @@ auto within(const std::string& table, F&& f) {
   }
 }
 
-void append(PointSet& points, double x, double y, const Body& body, const InitialPoint& at,
-            double area, std::int64_t id) {
+template <int dim>
+void append(PointsOf<dim>& points, const std::array<double, dim>& x, const Body& body,
+            const InitialPoint& at, double volume, std::int64_t id) {
+  using F = Layout<dim>;
+  // a body that turns does so about z
   const double cx = body.origin[0] + 0.5 * body.size[0];
   const double cy = body.origin[1] + 0.5 * body.size[1];
-  points.field[X].push_back(x);
-  points.field[Y].push_back(y);
-  points.field[VX].push_back(body.velocity[0] - body.spin * (y - cy));
-  points.field[VY].push_back(body.velocity[1] + body.spin * (x - cx));
-  points.field[LXX].push_back(0.0);
-  points.field[LXY].push_back(-body.spin);
-  points.field[LYX].push_back(body.spin);
-  points.field[LYY].push_back(0.0);
-  for (int k = 0; k < 4; ++k)
-    points.field[SXX + static_cast<std::size_t>(k)].push_back(at.stress[k]);
-  points.field[RHO].push_back(at.density);
-  points.field[MASS].push_back(at.density * area);
-  for (std::size_t k = 0; k < at.state.size(); ++k) points.field[STATE + k].push_back(at.state[k]);
+  const std::array<double, 3> turning{-body.spin * (x[1] - cy), body.spin * (x[0] - cx), 0.0};
+  for (std::size_t i = 0; i < dim; ++i) {
+    points.field[F::x + i].push_back(x[i]);
+    points.field[F::v + i].push_back(body.velocity[i] + turning[i]);
+    for (std::size_t j = 0; j < dim; ++j)
+      points.field[F::L + dim * i + j].push_back(i == 0 && j == 1   ? -body.spin
+                                                 : i == 1 && j == 0 ? body.spin
+                                                                    : 0.0);
+  }
+  for (std::size_t k = 0; k < F::components; ++k)
+    points.field[F::stress + k].push_back(at.stress.c[k]);
+  points.field[F::rho].push_back(at.density);
+  points.field[F::mass].push_back(at.density * volume);
+  for (std::size_t k = 0; k < at.state.size(); ++k)
+    points.field[F::state + k].push_back(at.state[k]);
   if (points.splits_stress()) {
     points.field[points.force_stress[0]].push_back(mean(at.stress));
     points.field[points.force_stress[2]].push_back(0.0);
   }
-  if (points.affine != LXX)
-    for (std::size_t k = 0; k < affine_fields; ++k)
-      points.field[points.affine + k].push_back(points.field[LXX + k].back());
+  if (points.affine != F::L)
+    for (std::size_t k = 0; k < F::gradient; ++k)
+      points.field[points.affine + k].push_back(points.field[F::L + k].back());
   points.id.push_back(id);
   ++points.count;
 }
 
-/// In the box, or in the disc and not in its hole.
-bool within_shape(const Body& body, double x, double y) {
+/// In the box, or in the disc (in space, cylinder) and not in its hole.
+template <int dim>
+bool within_shape(const Body& body, const std::array<double, dim>& x) {
   if (!body.disc) return true;
-  const double r = std::hypot(x - body.disc->centre[0], y - body.disc->centre[1]);
+  const double r = std::hypot(x[0] - body.disc->centre[0], x[dim - 1] - body.disc->centre[1]);
   return r >= body.disc->hole && r < body.disc->radius;
 }
 
@@ -69,25 +75,31 @@ double overburden(const Material& material, double ocr, double K0, double g, dou
   return s;
 }
 
-PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
-  PointSet points;
+template <int dim>
+PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) {
+  using F = Layout<dim>;
+  PointsOf<dim> points;
   points.material =
       within("law", [&] { return std::shared_ptr<const Material>(make_material(body.law)); });
-  points.fields = STATE + points.material->law().state.size();
-  if (scene.viscosity == Viscosity::implicit_solve && !points.material->law().has_stress_memory) {
-    points.force_stress = {points.fields, points.fields, points.fields + 1};
-    points.fields += split_fields;
+  points.fields = F::state + points.material->law().state.size();
+  if constexpr (dim == 2) {
+    if (scene.viscosity == Viscosity::implicit_solve && !points.material->law().has_stress_memory) {
+      points.force_stress = {points.fields, points.fields, points.fields + 1};
+      points.fields += split_fields;
+    }
   }
   if (scene.transfer == Transfer::relaxed) {
     points.affine = points.fields;
-    points.fields += affine_fields;
+    points.fields += F::gradient;
   }
 
-  const double spacing = scene.h / std::sqrt(static_cast<double>(scene.points_per_cell));
-  const auto nx = static_cast<std::int64_t>(std::llround(body.size[0] / spacing));
-  const auto ny = static_cast<std::int64_t>(std::llround(body.size[1] / spacing));
-  const double dx = body.size[0] / static_cast<double>(nx);
-  const double dy = body.size[1] / static_cast<double>(ny);
+  const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
+  std::array<double, dim> spacing;
+  double volume = 1.0;
+  for (std::size_t i = 0; i < dim; ++i) {
+    spacing[i] = body.size[i] / static_cast<double>(lattice[i]);
+    volume *= spacing[i];
+  }
   const double g = scene.gravity * std::cos(scene.tilt_deg * std::numbers::pi / 180.0);
   const double K0 = body.initial.K0.value_or(1.0);
 
@@ -96,8 +108,11 @@ PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
   };
   InitialPoint uniform;
   if (!body.lithostatic) uniform = initial(body.initial);
-  for (std::int64_t j = 0; j < ny; ++j) {
-    const double y = body.origin[1] + (static_cast<double>(j) + 0.5) * dy;
+  const auto coordinate = [&](std::size_t axis, std::int64_t n) {
+    return body.origin[axis] + (static_cast<double>(n) + 0.5) * spacing[axis];
+  };
+  for (std::int64_t j = 0; j < lattice[1]; ++j) {
+    const double y = coordinate(1, j);
     InitialPoint at = uniform;
     if (body.lithostatic) {
       const double depth = body.origin[1] + body.size[1] - y;
@@ -105,24 +120,30 @@ PointSet fill(const Body& body, const Scene& scene, std::int64_t first_id) {
       here.p = within("initial", [&] {
         // steps of a quarter spacing: the error of the fourth-order rule is far below round-off of
         // σ
-        const int steps = static_cast<int>(std::ceil(depth / (0.25 * dy)));
+        const int steps = static_cast<int>(std::ceil(depth / (0.25 * spacing[1])));
         return overburden(*points.material, body.initial.ocr.value_or(1.0), K0, g, depth, steps) *
                (1.0 + 2.0 * K0) / 3.0;
       });
       at = initial(here);
     }
-    for (std::int64_t i = 0; i < nx; ++i) {
-      const double x = body.origin[0] + (static_cast<double>(i) + 0.5) * dx;
-      if (!within_shape(body, x, y)) continue;
-      append(points, x, y, body, at, dx * dy, first_id + static_cast<std::int64_t>(points.count));
-    }
+    for (std::int64_t k = 0; k < lattice[2]; ++k)
+      for (std::int64_t i = 0; i < lattice[0]; ++i) {
+        std::array<double, dim> x{coordinate(0, i), y};
+        if constexpr (dim == 3) x[2] = coordinate(2, k);
+        if (!within_shape<dim>(body, x)) continue;
+        append<dim>(points, x, body, at, volume,
+                    first_id + static_cast<std::int64_t>(points.count));
+      }
   }
   // solid depths are measured at the loosest density the law knows by name, else as filled
-  points.rho_0 = points.field[RHO].empty() ? 0.0 : points.field[RHO].back();
+  points.rho_0 = points.field[F::rho].empty() ? 0.0 : points.field[F::rho].back();
   for (std::size_t k = 0; k < points.material->law().parameters.size(); ++k)
     if (points.material->law().parameters[k].name == "rho_0")
       points.rho_0 = points.material->theta()[k];
   return points;
 }
+
+template PointsOf<2> fill<2>(const Body&, const Scene&, std::int64_t);
+template PointsOf<3> fill<3>(const Body&, const Scene&, std::int64_t);
 
 }  // namespace repose::mpm

@@ -19,16 +19,16 @@ struct FrameView {
     std::string name;
     std::span<const double> values;
   };
-  /// A vector in the plane; ParaView gets (x, y, 0).
+  /// A vector. What is empty (z of the plane) is zero.
   struct Vector {
     std::string name;
-    std::span<const double> x, y;
+    std::span<const double> x, y, z;
   };
-  /// A symmetric tensor of plane strain; ParaView gets its six components in the order that it
-  /// names itself: XX YY ZZ XY YZ XZ, the last two zero.
+  /// A symmetric tensor; ParaView gets its six components in the order that it names itself: XX YY
+  /// ZZ XY YZ XZ. What is empty (the last two in plane strain) is zero.
   struct Tensor {
     std::string name;
-    std::span<const double> xx, yy, zz, xy;
+    std::span<const double> xx, yy, zz, xy, yz, zx;
   };
   struct IntField {
     std::string name;
@@ -36,7 +36,7 @@ struct FrameView {
   };
 
   double time_s = 0.0;
-  std::span<const double> x_m, y_m;
+  std::span<const double> x_m, y_m, z_m;  ///< no z_m in the plane
   std::vector<Scalar> scalars;
   std::vector<Vector> vectors;
   std::vector<Tensor> tensors;

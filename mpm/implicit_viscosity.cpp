@@ -182,10 +182,10 @@ ViscousEffect ImplicitViscosity::solve(Grid& grid, std::vector<PointSet>& bodies
   each_node([&](std::size_t k, std::size_t n) {
     const NodeBlock& nb = grid.node_blocks[k];
     mass_[k].x[n] = mass_[k].y[n] = nb.mass[n];
-    start_[k].x[n] = nb.vx[n];
-    start_[k].y[n] = nb.vy[n];
-    trial_[k].x[n] = nb.ux[n];
-    trial_[k].y[n] = nb.uy[n];
+    start_[k].x[n] = nb.v[0][n];
+    start_[k].y[n] = nb.v[1][n];
+    trial_[k].x[n] = nb.u[0][n];
+    trial_[k].y[n] = nb.u[1][n];
   });
   operator_.mirror().fold_diagonal(mass_);
   each_node([&](std::size_t k, std::size_t n) {
@@ -233,21 +233,22 @@ ViscousEffect ImplicitViscosity::solve(Grid& grid, std::vector<PointSet>& bodies
   const auto work = sums<2>([&](std::size_t k, std::size_t n) {
     const NodeBlock& nb = grid.node_blocks[k];
     const double vx = v_[k].x[n], vy = v_[k].y[n];
-    const double px = mass_[k].x[n] * (vx - nb.vx[n]), py = mass_[k].y[n] * (vy - nb.vy[n]);
-    return std::array{0.5 * (px * (vx + nb.vx[n]) + py * (vy + nb.vy[n])),
-                      -0.5 * (px * (vx - nb.ux[n]) + py * (vy - nb.uy[n]))};
+    const double px = mass_[k].x[n] * (vx - nb.v[0][n]), py = mass_[k].y[n] * (vy - nb.v[1][n]);
+    return std::array{0.5 * (px * (vx + nb.v[0][n]) + py * (vy + nb.v[1][n])),
+                      -0.5 * (px * (vx - nb.u[0][n]) + py * (vy - nb.u[1][n]))};
   });
   effect.kinetic = work[0];
   effect.half_jump_work = work[1];
   operator_.mirror().extend(v_);
   each_node([&](std::size_t k, std::size_t n) {
-    grid.node_blocks[k].vx[n] = v_[k].x[n];
-    grid.node_blocks[k].vy[n] = v_[k].y[n];
+    grid.node_blocks[k].v[0][n] = v_[k].x[n];
+    grid.node_blocks[k].v[1][n] = v_[k].y[n];
   });
   return effect;
 }
 
-void Simulation::Impl::solve_viscosity(double dt) {
+template <>
+void Simulation::Impl<2>::solve_viscosity(double dt) {
   viscous_effect_ = {};
   if (scene.viscosity != Viscosity::implicit_solve) return;
   viscous_effect_ =

@@ -23,24 +23,26 @@ NodeSums sums_of(const Nodes& nodes) {
   NodeSums sums;
   nodes.each([&](const NodeBlock& b, std::size_t n) {
     const double m = b.mass[n];
-    sums.before += 0.5 * m * (b.ux[n] * b.ux[n] + b.uy[n] * b.uy[n]);
-    sums.after += 0.5 * m * (b.vx[n] * b.vx[n] + b.vy[n] * b.vy[n]);
-    sums.impulse_work += m * ((b.vx[n] - b.ux[n]) * b.ux[n] + (b.vy[n] - b.uy[n]) * b.uy[n]);
+    sums.before += 0.5 * m * (b.u[0][n] * b.u[0][n] + b.u[1][n] * b.u[1][n]);
+    sums.after += 0.5 * m * (b.v[0][n] * b.v[0][n] + b.v[1][n] * b.v[1][n]);
+    sums.impulse_work +=
+        m * ((b.v[0][n] - b.u[0][n]) * b.u[0][n] + (b.v[1][n] - b.u[1][n]) * b.u[1][n]);
   });
   return sums;
 }
 
 void join(const Nodes& nodes) {
-  using Field = std::array<double, block_nodes> NodeBlock::*;
   double mass = 0.0;
   nodes.each([&](const NodeBlock& b, std::size_t n) { mass += b.mass[n]; });
   if (mass == 0.0) return;
-  for (const Field v :
-       {&NodeBlock::ux, &NodeBlock::uy, &NodeBlock::vx, &NodeBlock::vy, &NodeBlock::extra}) {
+  const auto average = [&](auto&& of) {
     double momentum = 0.0;
-    nodes.each([&](const NodeBlock& b, std::size_t n) { momentum += b.mass[n] * (b.*v)[n]; });
-    nodes.each([&](NodeBlock& b, std::size_t n) { (b.*v)[n] = momentum / mass; });
-  }
+    nodes.each([&](NodeBlock& b, std::size_t n) { momentum += b.mass[n] * of(b)[n]; });
+    nodes.each([&](NodeBlock& b, std::size_t n) { of(b)[n] = momentum / mass; });
+  };
+  for (std::size_t i = 0; i < 2; ++i) average([&](NodeBlock & b) -> auto& { return b.u[i]; });
+  for (std::size_t i = 0; i < 2; ++i) average([&](NodeBlock & b) -> auto& { return b.v[i]; });
+  average([](NodeBlock & b) -> auto& { return b.extra; });
   // the real masses stay apart, so that sums over nodes count each once
   nodes.each([&](NodeBlock& b, std::size_t n) { b.mirrored_mass[n] = mass; });
 }

@@ -34,7 +34,26 @@ bool is_multiple(double x, double unit) {
 }
 
 int points_per_edge(const Scene& scene) {
-  return static_cast<int>(std::lround(std::sqrt(scene.points_per_cell)));
+  return static_cast<int>(std::lround(scene.dimensions() == 2 ? std::sqrt(scene.points_per_cell)
+                                                              : std::cbrt(scene.points_per_cell)));
+}
+
+/// The walls with their keys.
+std::vector<std::pair<Wall, const char*>> walls_of(const Scene& scene) {
+  std::vector<std::pair<Wall, const char*>> walls{{scene.floor, "domain.floor"},
+                                                  {scene.left, "domain.left"},
+                                                  {scene.right, "domain.right"},
+                                                  {scene.top, "domain.top"}};
+  if (scene.dimensions() == 3) {
+    walls.emplace_back(scene.near, "domain.near");
+    walls.emplace_back(scene.far, "domain.far");
+  }
+  return walls;
+}
+
+/// The n-th root of x for n cells or points along each axis.
+double per_axis(const Scene& scene, double x) {
+  return scene.dimensions() == 2 ? std::sqrt(x) : std::cbrt(x);
 }
 
 void require(double x, const Range& range, const char* key, const char* what) {
@@ -62,11 +81,9 @@ void check_numbers(const Scene& scene) {
   require(scene.end_time, not_negative, "scene.end_time", "end_time");
   require(scene.gravity, not_negative, "scene.gravity", "gravity");
   require(scene.tilt_deg, {-90.0, 90.0, false, false}, "scene.tilt_deg", "tilt_deg");
-  for (const double length : scene.domain) require(length, positive, "domain.size", "domain.size");
-  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
-                                  {scene.left, "domain.left"},
-                                  {scene.right, "domain.right"},
-                                  {scene.top, "domain.top"}}) {
+  for (std::size_t k = 0; k < scene.dimensions(); ++k)
+    require(scene.domain[k], positive, "domain.size", "domain.size");
+  for (const auto& [wall, key] : walls_of(scene)) {
     if (wall.kind == Wall::Kind::friction) require(wall.friction, not_negative, key, "friction");
     require(wall.speed, {}, key, "speed");
     if (wall.speed != 0.0 && wall.kind != Wall::Kind::no_slip)
@@ -74,12 +91,16 @@ void check_numbers(const Scene& scene) {
   }
   require(scene.h, positive, "grid.h", "h");
   const int edge = scene.points_per_cell > 0 ? points_per_edge(scene) : 0;
-  if (scene.points_per_cell > 100 || edge < 1 || edge * edge != scene.points_per_cell)
-    throw InputError("grid.points_per_cell",
-                     "points_per_cell = " + std::to_string(scene.points_per_cell) +
-                         " must be a square number from 1 to 100: 1, 4, 9, 16, ...");
-  require(scene.order, {1.0, max_order, false, false}, "step.order", "order");
+  const bool space = scene.dimensions() == 3;
+  if (scene.points_per_cell > 100 || edge < 1 ||
+      edge * edge * (space ? edge : 1) != scene.points_per_cell)
+    throw InputError(
+        "grid.points_per_cell",
+        "points_per_cell = " + std::to_string(scene.points_per_cell) +
+            (space ? " must be a cube number up to 64 in three dimensions: 1, 8, 27, 64"
+                   : " must be a square number from 1 to 100: 1, 4, 9, 16, ..."));
   require(scene.sleep_speed, not_negative, "step.sleep_speed", "sleep_speed");
+  require(scene.order, {1.0, max_order, false, false}, "step.order", "order");
   require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
   require(scene.viscosity_tolerance, {0.0, 0.1, true, false}, "step.viscosity_tolerance",
           "viscosity_tolerance");
@@ -102,7 +123,8 @@ bool fits(const Scene& scene, double h, bool with_bodies) {
   if (!is_multiple(scene.domain[0], h)) return false;
   const double spacing = h / points_per_edge(scene);
   return !with_bodies || std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) {
-    return is_multiple(b.size[0], spacing) && is_multiple(b.size[1], spacing);
+    return is_multiple(b.size[0], spacing) && is_multiple(b.size[1], spacing) &&
+           (scene.dimensions() == 2 || is_multiple(b.size[2], spacing));
   });
 }
 
@@ -159,30 +181,37 @@ void check_cells(const Scene& scene) {
                                         number(scene.domain[1] / scene.h, 6) +
                                         " cells of h = " + number(scene.h) + " m; " +
                                         good_lengths(scene.domain[1], scene.h) + " m would fit");
+  if (scene.dimensions() == 3 && !is_multiple(scene.domain[2], scene.h))
+    throw InputError("domain.size", "the box's depth of " + number(scene.domain[2]) + " m is " +
+                                        number(scene.domain[2] / scene.h, 6) +
+                                        " cells of h = " + number(scene.h) + " m; " +
+                                        good_lengths(scene.domain[2], scene.h) + " m would fit");
   // opposite walls must not share a node that both mirror
-  const double least = std::min(scene.domain[0], scene.domain[1]) / scene.h;
+  const auto end = scene.domain.begin() + static_cast<std::ptrdiff_t>(scene.dimensions());
+  const double least = *std::min_element(scene.domain.begin(), end) / scene.h;
   if (least < min_cells - 0.5)
     throw InputError("grid.h", "the box is " + number(std::round(least)) +
                                    " cells across; the walls need at least " + number(min_cells) +
                                    " between them: h <= " + number(least * scene.h / min_cells) +
                                    " m");
-  const double cells = scene.domain[0] / scene.h * (scene.domain[1] / scene.h);
+  double cells = 1.0;
+  for (auto length = scene.domain.begin(); length != end; ++length) cells *= *length / scene.h;
   if (cells > max_cells)
-    throw InputError("grid.h",
-                     "the box has " + number(cells, 3) +
-                         " cells, more than memory is likely to hold (" + number(max_cells) +
-                         "); h >= " + number(scene.h * std::sqrt(cells / max_cells) * 1.0005, 3) +
-                         " m would do");
+    throw InputError(
+        "grid.h",
+        "the box has " + number(cells, 3) + " cells, more than memory is likely to hold (" +
+            number(max_cells) + "); h >= " +
+            number(scene.h * per_axis(scene, cells / max_cells) * 1.0005, 3) + " m would do");
 }
 
 void check_geometry(const Scene& scene) {
   if (scene.bodies.empty()) throw InputError("body", "a scene needs at least one [[body]]");
   const double spacing = point_spacing(scene);
-  const char* const axis[2] = {"x", "y"};
+  const char* const axis[3] = {"x", "y", "z"};
   double points = 0.0;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < scene.dimensions(); ++k) {
       if (!std::isfinite(body.origin[k]) || !std::isfinite(body.velocity[k]) ||
           !std::isfinite(body.spin))
         throw InputError(path_of(i, "origin"), "origin, velocity and spin must be finite");
@@ -196,17 +225,19 @@ void check_geometry(const Scene& scene) {
                              number(body.origin[k]) + " to " + number(end) +
                              " m, outside the box [0, " + number(scene.domain[k]) + "] m");
     }
-    points += body.size[0] / spacing * (body.size[1] / spacing);
+    double in_body = 1.0;
+    for (std::size_t k = 0; k < scene.dimensions(); ++k) in_body *= body.size[k] / spacing;
+    points += in_body;
   }
   if (points > max_points)
-    throw InputError("grid.h",
-                     "h = " + number(scene.h) + " m with " + std::to_string(scene.points_per_cell) +
-                         " points per cell makes " + number(points, 3) +
-                         " points, more than memory is likely to hold (" + number(max_points) +
-                         "); h >= " + number(scene.h * std::sqrt(points / max_points) * 1.0005, 3) +
-                         " m would do");
+    throw InputError(
+        "grid.h",
+        "h = " + number(scene.h) + " m with " + std::to_string(scene.points_per_cell) +
+            " points per cell makes " + number(points, 3) +
+            " points, more than memory is likely to hold (" + number(max_points) + "); h >= " +
+            number(scene.h * per_axis(scene, points / max_points) * 1.0005, 3) + " m would do");
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    for (std::size_t k = 0; k < 2; ++k) {
+    for (std::size_t k = 0; k < scene.dimensions(); ++k) {
       const double size = scene.bodies[i].size[k];
       if (is_multiple(size, spacing)) continue;
       const std::string near = nearby_h(scene, true);
@@ -233,9 +264,18 @@ void check_discs(const Scene& scene) {
       throw InputError(path_of(i, "radius"), "the disc is " + number(thickness) +
                                                  " m thick, less than two points " +
                                                  number(point_spacing(scene)) + " m apart");
-    if (body.lithostatic)
+    if (body.lithostatic && scene.dimensions() == 2)
       throw InputError(path_of(i, "initial.lithostatic"),
                        "a disc has no level surface: only a box can be lithostatic");
+    if (scene.dimensions() == 2) continue;
+    const auto cuts = [&](std::size_t axis, double centre, const Wall& wall, const char* key) {
+      if (body.size[axis] < 2.0 * disc.radius * (1.0 - tolerance) && wall.kind != Wall::Kind::slip)
+        throw InputError(key, "the wall cuts body[" + std::to_string(i) + "], whose axis lies at " +
+                                  number(centre) +
+                                  " m: only a slip wall is a plane of symmetry to its other half");
+    };
+    cuts(0, disc.centre[0], scene.left, "domain.left");
+    cuts(2, disc.centre[1], scene.near, "domain.near");
   }
 }
 
@@ -248,12 +288,14 @@ void check_overlap(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const Body &a = scene.bodies[i], &b = scene.bodies[j];
-      std::array<double, 2> from{}, to{};
-      for (std::size_t k = 0; k < 2; ++k) {
+      std::array<double, 3> from{}, to{};
+      for (std::size_t k = 0; k < 3; ++k) {
         from[k] = std::max(a.origin[k], b.origin[k]);
         to[k] = std::min(a.origin[k] + a.size[k], b.origin[k] + b.size[k]);
       }
-      if (to[0] - from[0] <= slack || to[1] - from[1] <= slack) continue;
+      if (to[0] - from[0] <= slack || to[1] - from[1] <= slack ||
+          (scene.dimensions() == 3 && to[2] - from[2] <= slack))
+        continue;
       throw InputError(path_of(i, "origin"), name(i) + " overlaps " + name(j) + " in x = [" +
                                                  number(from[0]) + ", " + number(to[0]) +
                                                  "] m, y = [" + number(from[1]) + ", " +
@@ -264,10 +306,7 @@ void check_overlap(const Scene& scene) {
 /// What an extended velocity adds vanishes at walls at rest and knows no images across an edge.
 void check_extension(const Scene& scene) {
   if (scene.transfer != Transfer::xpic && scene.transfer != Transfer::fmpm) return;
-  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
-                                  {scene.left, "domain.left"},
-                                  {scene.right, "domain.right"},
-                                  {scene.top, "domain.top"}})
+  for (const auto& [wall, key] : walls_of(scene))
     if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
       throw InputError(key,
                        "a periodic edge or a wall that moves does not go with step.transfer = "
@@ -293,10 +332,7 @@ void check_viscosity(const Scene& scene) {
                          "\" does not go with step.viscosity = \"implicit\": the strain rates that "
                          "it solves for are the affine gradients of \"relaxed\", \"apic\", "
                          "\"aflip\", \"flip\" and \"pic\"");
-  for (const auto& [wall, key] : {std::pair{scene.floor, "domain.floor"},
-                                  {scene.left, "domain.left"},
-                                  {scene.right, "domain.right"},
-                                  {scene.top, "domain.top"}})
+  for (const auto& [wall, key] : walls_of(scene))
     if (wall.kind == Wall::Kind::friction)
       throw InputError(key,
                        "a wall with friction does not go with step.viscosity = \"implicit\": its "
@@ -322,6 +358,25 @@ void check_sleep(const Scene& scene) {
   for (const Wall& wall : {scene.floor, scene.left, scene.right, scene.top})
     if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
       refuse("periodic edges or walls that move");
+}
+
+/// What plane strain alone has (docs/three_dimensions.md).
+void check_space(const Scene& scene) {
+  if (scene.dimensions() == 2) return;
+  const char* const plane_only = " is for plane strain only: this scene has three dimensions";
+  if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer",
+                     "transfer = \"" + std::string(name_of(scene.transfer)) + "\"" + plane_only +
+                         " (\"relaxed\", \"apic\", \"tpic\", \"aflip\", \"flip\" and \"pic\" go)");
+  if (scene.viscosity == Viscosity::implicit_solve)
+    throw InputError("step.viscosity", std::string("viscosity = \"implicit\"") + plane_only);
+  if (scene.pressure_averaging > 0.0)
+    throw InputError("step.pressure_averaging", std::string("pressure_averaging") + plane_only);
+  for (const auto& [wall, key] : walls_of(scene)) {
+    if (wall.kind == Wall::Kind::periodic)
+      throw InputError(key, std::string("a periodic edge") + plane_only);
+    if (wall.speed != 0.0) throw InputError(key, std::string("a wall that moves") + plane_only);
+  }
 }
 
 /// What the material says to the state at the base of a lithostatic body.
@@ -371,9 +426,12 @@ double default_relaxation_time(const Scene& scene) {
 
 double point_spacing(const Scene& scene) { return scene.h / points_per_edge(scene); }
 
-std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body) {
+std::array<std::int64_t, 3> point_lattice(const Scene& scene, const Body& body) {
   const double spacing = point_spacing(scene);
-  return {std::llround(body.size[0] / spacing), std::llround(body.size[1] / spacing)};
+  std::array<std::int64_t, 3> points{1, 1, 1};
+  for (std::size_t k = 0; k < scene.dimensions(); ++k)
+    points[k] = std::llround(body.size[k] / spacing);
+  return points;
 }
 
 void set_disc(Body& body, const Disc& disc) {
@@ -382,6 +440,17 @@ void set_disc(Body& body, const Disc& disc) {
     body.origin[k] = disc.centre[k] - disc.radius;
     body.size[k] = 2.0 * disc.radius;
   }
+}
+
+void set_cylinder(Body& body, const Disc& disc, double base, double height) {
+  body.disc = disc;
+  for (const std::size_t k : {0, 2}) {
+    const double centre = disc.centre[k / 2];
+    body.origin[k] = centre == 0.0 ? 0.0 : centre - disc.radius;
+    body.size[k] = centre == 0.0 ? disc.radius : 2.0 * disc.radius;
+  }
+  body.origin[1] = base;
+  body.size[1] = height;
 }
 
 bool raise_top_to_cells(Scene& scene) {
@@ -399,6 +468,7 @@ void validate(const Scene& scene) {
   check_discs(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+  check_space(scene);
   check_extension(scene);
   check_viscosity(scene);
   check_sleep(scene);

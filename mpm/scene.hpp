@@ -27,9 +27,9 @@ struct Wall {
   double speed = 0.0;     ///< of the wall along itself, +x or +y, for Kind::no_slip [m/s]
 };
 
-/// A disc of points; with a hole, a ring.
+/// A disc of points; with a hole, a ring. In space, the section of an upright cylinder.
 struct Disc {
-  std::array<double, 2> centre{};  ///< [m]
+  std::array<double, 2> centre{};  ///< x and y, in space x and z [m]
   double radius = 0.0;             ///< [m]
   double hole = 0.0;               ///< radius of the hole [m]
 };
@@ -37,11 +37,12 @@ struct Disc {
 /// A block of one material at rest or in uniform motion.
 struct Body {
   std::string name;
-  std::array<double, 2> origin{};  ///< lower left corner of the box [m]
-  std::array<double, 2> size{};    ///< [m]
-  std::optional<Disc> disc;        ///< only the points in it; origin and size bound it: set_disc()
-  std::array<double, 2> velocity{};  ///< initial velocity [m/s]
-  double spin = 0.0;                 ///< initial angular velocity about the body's centre [rad/s]
+  std::array<double, 3> origin{};  ///< lower left corner of the box [m]; z in space only
+  std::array<double, 3> size{};    ///< [m]
+  /// Only the points in it; origin and size bound it: set_disc(), set_cylinder()
+  std::optional<Disc> disc;
+  std::array<double, 3> velocity{};  ///< initial velocity [m/s]
+  double spin = 0.0;  ///< initial angular velocity about z, through the body's centre [rad/s]
   LawSpec law;
   InitialConditions initial;
   /// p grows with depth below the body's top; of `initial` only K0 (default 1) and ocr apply.
@@ -92,16 +93,21 @@ struct Scene {
   double gravity = 9.8;   ///< [m/s²], downwards
   double tilt_deg = 0.0;  ///< turns gravity so that material flows towards +x: g (sin, −cos)
 
-  std::array<double, 2> domain{};  ///< box from (0, 0) to this corner [m]
+  /// Box from the origin to this corner [m]; without an extent along z the scene is plane strain,
+  /// per metre of depth
+  std::array<double, 3> domain{};
+  std::size_t dimensions() const { return domain[2] == 0.0 ? 2 : 3; }
   Wall floor{Wall::Kind::no_slip};
   Wall left{Wall::Kind::slip};
   Wall right{Wall::Kind::slip};
   Wall top{Wall::Kind::slip};
+  Wall near{Wall::Kind::slip};  ///< at z = 0, in space
+  Wall far{Wall::Kind::slip};   ///< at the other end of z
 
   std::vector<Body> bodies;
 
   double h = 0.0;           ///< cell size [m]
-  int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16
+  int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16; in space a cube: 1, 8, 27
   Kernel kernel = Kernel::cubic;
   Transfer transfer = Transfer::relaxed;
   /// [s], for Transfer::relaxed; absent: default_relaxation_time()
@@ -128,7 +134,8 @@ struct Scene {
   double series_interval = 0.0;  ///< [s]; 0: first and last row only
 };
 
-/// Distance between neighbouring points of a body at the start [m]: h/√points_per_cell.
+/// Distance between neighbouring points of a body at the start [m]: h/√points_per_cell, in space
+/// h/∛points_per_cell.
 double point_spacing(const Scene& scene);
 
 /// 0.03 √(h/g), of the order of the largest stable step of soft grains [s]. Short
@@ -139,15 +146,22 @@ double default_relaxation_time(const Scene& scene);
 /// Makes a body a disc: its origin and size become those of the square around it.
 void set_disc(Body& body, const Disc& disc);
 
-/// Points of a body along x and y: its size over point_spacing(), which validate() has found whole.
-std::array<std::int64_t, 2> point_lattice(const Scene& scene, const Body& body);
+/// Makes a body an upright cylinder from y = base to base + height. Where its axis lies in the wall
+/// x = 0 or z = 0, that wall cuts it in half: its origin and size are those of the box around what
+/// is left.
+void set_cylinder(Body& body, const Disc& disc, double base, double height);
+
+/// Points of a body along x, y and z (1 in the plane): its size over point_spacing(), which
+/// validate() has found whole.
+std::array<std::int64_t, 3> point_lattice(const Scene& scene, const Body& body);
 
 /// Raises the top edge of the box to the next whole cell if it stands on none (the paper's 0.56 m
 /// is 89.6 cells). Returns whether it did. The other edges stay: material rests against them.
 bool raise_top_to_cells(Scene& scene);
 
 /// Checks what no single value can tell: bodies inside the box and not overlapping, h that divides
-/// the box, a square points_per_cell, laws that accept their parameters and initial state. Throws
+/// the box, a square points_per_cell, laws that accept their parameters and initial state, nothing
+/// that only plane strain has in a scene in space. Throws
 /// InputError whose key is a TOML path such as "grid.h", "body[0].size" or "body[1].law.kappa".
 void validate(const Scene& scene);
 

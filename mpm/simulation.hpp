@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The Material Point Method simulation of one scene: plane strain.
+/// The Material Point Method simulation of one scene, in plane strain or in three dimensions.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,23 +13,27 @@
 
 namespace repose::mpm {
 
-/// One row of series.csv, per metre of depth.
+/// One row of series.csv, in plane strain per metre of depth; in space everything that is named
+/// _per_m is a total in J or kg.
 struct SeriesRow {
   double time_s, dt_s;
   std::int64_t step;
-  double front_m;      ///< largest x with solid depth (column mass/ρ_0) >= 0.02 H_0
-  double front_max_m;  ///< largest x of any point
-  double front_99_m;   ///< x left of which lies 99 % of the mass in the box
-  double height_m;     ///< solid depth at the left wall
+  /// Largest x (of a cylinder: radius about its axis) with solid depth (column mass/ρ_0) >= 0.02
+  /// H_0
+  double front_m;
+  double front_max_m;  ///< largest x (radius) of any point
+  double front_99_m;   ///< x (radius) up to which lies 99 % of the mass in the box
+  double height_m;     ///< solid depth at the left wall, of a cylinder on its axis
   double kinetic_J_per_m, potential_J_per_m, elastic_J_per_m;
   double dissipated_J_per_m;       ///< by the material: stress work not stored
   double transfer_loss_J_per_m;    ///< kinetic energy lost between points and grid (numerical)
   double wall_loss_J_per_m;        ///< taken by the walls: impact and friction
   double energy_residual_J_per_m;  ///< what the ledger does not account for (time integration)
   double mass_kg_per_m;
-  double outflow_kg_per_m;        ///< mass that has left through open edges
-  double momentum_x, momentum_y;  ///< [kg m/s per m]
-  double angular_momentum;  ///< about the origin, the affine velocity included [kg m²/s per m]
+  double outflow_kg_per_m;                    ///< mass that has left through open edges
+  double momentum_x, momentum_y, momentum_z;  ///< [kg m/s per m]
+  /// About the origin, of which the plane has z, the affine velocity included [kg m²/s per m]
+  double angular_momentum, angular_momentum_x, angular_momentum_y;
   double density_min, density_max;  ///< [kg/m³]
   std::int64_t points_separated;    ///< points that carry no stress
 };
@@ -57,7 +61,7 @@ class Simulation {
  public:
   /// Fills the bodies with points. `threads` <= 0: all cores. Throws InputError (see validate()).
   explicit Simulation(const Scene& scene, int threads = 0);
-  /// The same with initial velocities and body accelerations of the program's own.
+  /// The same with initial velocities and body accelerations of the program's own; in the plane.
   Simulation(const Scene& scene, const Prescribed& prescribed, int threads = 0);
   ~Simulation();
   Simulation(Simulation&&) noexcept;
@@ -76,23 +80,27 @@ class Simulation {
 
   SeriesRow diagnostics() const;
 
-  /// Solid depth over x: column mass/ρ_0 per cell column.
+  /// Solid depth over x, or the radius (SeriesRow::front_m): column mass/ρ_0 per cell column.
   struct Profile {
     std::vector<double> x_m, depth_m;
   };
   Profile profile() const;
 
-  /// Pressure against overburden, for a deposit at rest (gravity along −y): points deeper than 2h
-  /// below the surface, where the deposit has at least a quarter of its greatest depth.
+  /// Pressure against overburden, for a deposit in the plane at rest (gravity along −y): points
+  /// deeper than 2h below the surface, where the deposit has at least a quarter of its greatest
+  /// depth.
   RestPressure rest_pressure() const;
 
   /// All points in a fixed order (their order of creation), for frames and pictures.
   struct Snapshot {
     std::vector<double> x_m, y_m, vx, vy, density, pressure_Pa, mises_Pa, sxx, syy, szz, sxy;
     std::vector<double> shear_rate;  ///< γ̇ = √(2D′:D′) [1/s]
-    std::vector<double> mass;        ///< [kg/m]
+    std::vector<double> mass;        ///< [kg/m], in space [kg]
+    std::vector<double> z_m, vz, syz, szx;  ///< in space, else empty
     std::vector<std::int32_t> body;
     FrameView view(double time_s) const;  ///< refers to this snapshot
+    /// In space, the points between two heights z [m].
+    Snapshot slice(double from, double to) const;
   };
   Snapshot snapshot() const;
 
@@ -116,8 +124,13 @@ class Simulation {
 
  private:
   friend class MidCollapse;  ///< bench/: starts from points that another resolution has moved
+  template <int dim>
   class Impl;
-  std::unique_ptr<Impl> impl_;
+  /// f(whichever of the two there is).
+  template <class F>
+  auto visit(F&& f) const;
+  std::unique_ptr<Impl<2>> plane_;
+  std::unique_ptr<Impl<3>> space_;
 };
 
 /// Points, cells, steps, memory and time of a scene, from a few measured steps (< 1 s).

@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// The state of a simulation and the stages of its step. Private to mpm/.
+/// The state of a simulation and the stages of its step, in the plane or in space. Private to mpm/.
 
 #include <tbb/task_arena.h>
 
+#include "mpm/deposit.hpp"
 #include "mpm/grid.hpp"
 #include "mpm/implicit_viscosity.hpp"
 #include "mpm/ledger.hpp"
@@ -15,6 +16,10 @@
 
 namespace repose::mpm {
 
+/// What the tiles' last channel carries.
+enum class Extra : std::uint8_t { nothing, elastic, signal };
+
+template <int dim>
 class Simulation::Impl {
  public:
   Impl(const Scene& scene, const Prescribed& prescribed, int threads);
@@ -35,6 +40,13 @@ class Simulation::Impl {
   void settle();                    ///< blocks at rest fall asleep, stirred ones wake (sleep.hpp)
 
   SeriesRow diagnostics();
+  Deposit deposit() const;
+  std::int64_t live_cells() const;
+  Snapshot snapshot() const;
+  std::vector<std::string> warnings() const;
+  Counters counters() const;
+  void save(const std::filesystem::path& file) const;
+  void load(const std::filesystem::path& file);
   /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.
   struct Energies {
     double kinetic = 0.0, potential = 0.0, elastic = 0.0;
@@ -47,11 +59,11 @@ class Simulation::Impl {
   }
 
   Scene scene;
-  std::array<double, 2> gravity{};
+  std::array<double, dim> gravity{};
   Walls walls;
-  std::vector<PointSet> bodies;
+  std::vector<PointsOf<dim>> bodies;
   std::vector<std::string> body_names;
-  Grid grid;
+  GridOf<dim> grid;
   mutable tbb::task_arena arena;
   int threads;
 
@@ -91,29 +103,40 @@ class Simulation::Impl {
     bool stirred = false;      ///< asleep, and something happens at its border
     std::string failure;
   };
-  /// What the tiles' last channel carries.
-  enum class Extra : std::uint8_t { nothing, elastic, signal };
   template <class Kernel, bool affine, Extra extra>
   void transfer_to_tile(std::size_t block);
   void transfer_to_tile(std::size_t block, Extra extra);
-  static void square_signals(PointSet& points, const Range& range, double* signal2);
+  static void square_signals(PointsOf<dim>& points, const Range& range, double* signal2);
   template <class Kernel>
   void prescribed_force_to_tile(const PointSet& points, const Range& range,
                                 std::array<int, 2> origin, Tile& tile) const;
   template <class Kernel, Keeps keeps, bool averages>
   void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
-  void move(PointSet& points, const Range& range, const Motion& motion, double dt,
+  void move(PointsOf<dim>& points, const Range& range, const MotionOf<dim>& motion, double dt,
             BlockSums& sums) const;
-  /// Brings a range's stress to the end of the step; `scratch` has room for scratch_arrays arrays.
-  static constexpr std::size_t scratch_arrays = 12;
-  void strain(PointSet& points, std::size_t body, const Range& range, const Motion& motion,
-              double dt, double* scratch, BlockSums& sums) const;
+  /// Arrays of a range's length: velocity and mean elastic strain (Motion), and in strain() a
+  /// strain, a spin, work, modulus, viscosity and pressure.
+  static constexpr std::size_t scratch_arrays =
+      dim + 1 + Layout<dim>::components + (dim == 2 ? 1 : 3) + 4;
+  /// Brings a range's stress to the end of the step.
+  void strain(PointsOf<dim>& points, std::size_t body, const Range& range,
+              const MotionOf<dim>& motion, double dt, double* scratch, BlockSums& sums) const;
   /// Adds a range's energies, work, power and signals after its update.
-  void sum_up(const PointSet& points, const Range& range, const Batch& batch, const Motion& motion,
+  void sum_up(const PointsOf<dim>& points, const Range& range,
+              const typename PointsOf<dim>::Batch& batch, const MotionOf<dim>& motion,
               BlockSums& sums) const;
+  /// The fields of the stress that gives the explicit forces, as in Sym.
+  static std::array<std::size_t, Layout<dim>::components> force_components(
+      const PointsOf<dim>& points) {
+    const auto& s = points.force_stress;
+    if constexpr (dim == 2)  // of an isotropic split stress, zz is what xx is
+      return {s[0], s[1], points.splits_stress() ? s[0] : std::size_t{SZZ}, s[2]};
+    else
+      return s;
+  }
   /// How far a point may be from the cell it was sorted into [m].
   double reach() const { return 0.98 * grid.h(); }
-  bool averages() const { return scene.pressure_averaging > 0.0; }
+  bool averages() const { return dim == 2 && scene.pressure_averaging > 0.0; }
   /// Whether this step, or the n-th after it, measures node_share.
   bool measures(int n = 0) const { return !averages() && (steps + n) % 16 == 0; }
   Extra extra(int n) const {
@@ -125,15 +148,15 @@ class Simulation::Impl {
   bool sleeps() const;
   double time_to_sleep() const;
   void put_to_sleep(std::size_t block);
-  void wake(PointBlock& block);
+  void wake(PointBlockOf<dim>& block);
   void wake_the_crowded();  ///< sleepers into which points have come
-  void sum_awake_mass(NodeBlock& nb) const;
+  void sum_awake_mass(NodeBlockOf<dim>& nb) const;
   bool is_stirred(std::size_t block, double dt);
   void remove_outflow();
   double initial_power() const;
   /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].
-  double power_of(const PointSet& points, std::size_t slot, double dt) const;
-  std::string describe(const PointSet& points, std::size_t body, std::size_t slot) const;
+  double power_of(const PointsOf<dim>& points, std::size_t slot, double dt) const;
+  std::string describe(const PointsOf<dim>& points, std::size_t body, std::size_t slot) const;
 
   std::vector<BlockSums> block_sums_;
   std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
@@ -144,5 +167,16 @@ class Simulation::Impl {
   ImplicitViscosity viscosity_;
   ViscousEffect viscous_effect_;
 };
+
+// of the plane alone
+template <>
+void Simulation::Impl<2>::solve_viscosity(double dt);
+template <>
+void Simulation::Impl<2>::extend_velocity();
+
+template <class F>
+auto Simulation::visit(F&& f) const {
+  return plane_ ? f(*plane_) : f(*space_);
+}
 
 }  // namespace repose::mpm

@@ -24,7 +24,7 @@ struct Rest {
   std::size_t count = 0;  ///< of the points that fell asleep
   Signals signals;        ///< of the points that fell asleep, at rest
   /// Of a sleeper with neighbours awake: Σ Δt a e^{−(t−t_n)/T_w} at the nodes of its tile, x, then
-  /// y [m/s]; empty: none since it fell asleep.
+  /// y (and z) [m/s]; empty: none since it fell asleep.
   AlignedVector<double> push;
 };
 

@@ -9,9 +9,10 @@
 
 namespace repose::mpm {
 
-/// Up to where a fixed step is stable for every law and any point (see stable_step()).
-inline constexpr double safe_courant(Kernel kernel) {
-  return kernel == Kernel::cubic ? 0.82 : 0.71;
+/// Up to where a fixed step is stable for every law and any point (see stable_step()); in space
+/// √(2/3) of it.
+inline constexpr double safe_courant(Kernel kernel, std::size_t dimensions) {
+  return (kernel == Kernel::cubic ? 0.82 : 0.71) * (dimensions == 2 ? 1.0 : 0.816);
 }
 
 /// The fastest signals among a set of points.
@@ -34,7 +35,9 @@ struct Signals {
 /// point strains itself by L̇ = −(V/m) D⁻¹σ wherever it is in its cell, so that its frequency is
 /// ω² = E/(ρD), D = h²/3 (cubic) or h²/4, with E the largest of 2(K + G/3), isotropic in the plane,
 /// and 2G, in shear: Δt = 2/ω is 0.82 h/c for a fluid, 1.03 h/c for μ(I) with G = 4K and 1.02 h/c
-/// for Cam-Clay with ν = 0.3 (cubic; quadratic: 0.87 of it).
+/// for Cam-Clay with ν = 0.3 (cubic; quadratic: 0.87 of it). In space E is the largest of 3K and
+/// 2G, Δt 0.67 h/c for a fluid, as before for μ(I) and 0.85 h/c for Cam-Clay, and the
+/// bulk's 1.93/√3.
 ///
 /// The same limits hold with the signals c + |v| of the nodes, c_i² = Σ w m c_p²/m_i, in place of
 /// the points': by Cauchy and Schwarz |L_p|² ≤ D⁻¹ Σ w|v_i|² (and Σ w (x_i − x_p)² = D), so that

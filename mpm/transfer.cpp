@@ -23,27 +23,34 @@ REPOSE_INLINE inline void unrolled(F&& f) {
 
 /// What a point adds to a node at the distance d = (dx, dy) h is w times a polynomial in d:
 ///   mass c_m,   momentum c_p + c_px dx + c_py dy,   force c_fx dx + c_fy dy,
-/// but for the force by the spline's gradient, c_fx ∂w/∂ξ + c_fy ∂w/∂η.
+/// but for the force by the spline's gradient, c_fx ∂w/∂ξ + c_fy ∂w/∂η. In space the same holds in
+/// each plane of nodes, at the distance dz h, with the coefficients
+///   w(ζ) c_m,   w(ζ)(c_p + c_pz dz),  w(ζ) c_px,  w(ζ) c_fx, …   and a force w(ζ) c_fz dz (or c_fz
+///   ∂w/∂ζ)
+/// that is constant in the plane.
 /// The coefficients of a pack of points.
-enum Coefficient : std::size_t {
-  C_M,
-  C_E,
-  C_PX,
-  C_PY,
-  C_XX,
-  C_XY,
-  C_YX,
-  C_YY,
-  C_FXX,
-  C_FXY,
-  C_FYY,
-  C_N
+template <int dim>
+struct Coefficient {
+  static constexpr std::size_t axes = dim;
+  static constexpr std::size_t M = 0;
+  static constexpr std::size_t E = 1;
+  static constexpr std::size_t P = 2;         ///< + component
+  static constexpr std::size_t A = P + axes;  ///< + 2 component + (dx or dy)
+  static constexpr std::size_t F = A + 2 * axes;
+  static constexpr std::size_t F_constant = F + 2 * axes - 1;  ///< + component
+  static constexpr std::size_t count = dim == 2 ? F_constant : F_constant + axes;
+  /// c_fx (a = 0) or c_fy (a = 1) of component i: xx, xy; xy, yy; zx, yz
+  static constexpr std::size_t force(std::size_t i, std::size_t a) { return F + i + a + (i == 2); }
 };
 
-/// Sums of a stencil kept in registers while consecutive points share the same stencil: all of its
-/// rows, side by side. (Every index is known to the compiler, or they would live in memory.)
-template <class Kernel, bool averages>
+/// Sums of a stencil, or of a plane of it, kept in registers while consecutive points share the
+/// same stencil: all of its rows, side by side. (Every index is known to the compiler, or they
+/// would live in memory.)
+template <class Kernel, bool averages, int dim>
 class Accumulator {
+  using C = Coefficient<dim>;
+  using T = Channels<dim>;
+
  public:
   Accumulator() { clear(); }
   REPOSE_INLINE void clear() {
@@ -56,10 +63,14 @@ class Accumulator {
     const Pack w_row = at.w.x_repeated();
     const Pack dx = at.d.x_repeated();
     const auto of = [&](std::size_t k) { return Pack(c[k][lane]); };
-    const Pack px = affine ? xsimd::fma(of(C_XX), dx, of(C_PX)) : of(C_PX);
-    const Pack py = affine ? xsimd::fma(of(C_YX), dx, of(C_PY)) : of(C_PY);
-    const Pack fx = of(C_FXX) * dx;
-    const Pack fy = of(C_FXY) * dx;
+    Pack p[dim], f[dim];
+    unrolled<dim>([&](auto i) REPOSE_INLINE {
+      p[i] = affine ? xsimd::fma(of(C::A + 2 * i), dx, of(C::P + i)) : of(C::P + i);
+      if constexpr (dim == 2)
+        f[i] = of(C::force(i, 0)) * dx;
+      else
+        f[i] = xsimd::fma(of(C::force(i, 0)), dx, of(C::F_constant + i));
+    });
     unrolled<packs_per_stencil>([&](auto k) REPOSE_INLINE {
       constexpr int row = static_cast<int>(k * rows_per_pack);
       const Pack w = w_row * at.w.template y_spread<row>();
@@ -68,20 +79,23 @@ class Accumulator {
         Pack& sum = sum_[channel * packs_per_stencil + k];
         sum = xsimd::fma(w, value, sum);
       };
-      add(std::integral_constant<std::size_t, T_MASS>{}, of(C_M));
-      add(std::integral_constant<std::size_t, T_PX>{}, affine ? xsimd::fma(of(C_XY), dy, px) : px);
-      add(std::integral_constant<std::size_t, T_PY>{}, affine ? xsimd::fma(of(C_YY), dy, py) : py);
-      if constexpr (!Kernel::spline_gradient) {
-        add(std::integral_constant<std::size_t, T_FX>{}, xsimd::fma(of(C_FXY), dy, fx));
-        add(std::integral_constant<std::size_t, T_FY>{}, xsimd::fma(of(C_FYY), dy, fy));
-      }
-      if constexpr (averages) add(std::integral_constant<std::size_t, T_EXTRA>{}, of(C_E));
+      add(std::integral_constant<std::size_t, T::mass>{}, of(C::M));
+      unrolled<dim>([&](auto i) REPOSE_INLINE {
+        add(std::integral_constant<std::size_t, T::momentum + i>{},
+            affine ? xsimd::fma(of(C::A + 2 * i + 1), dy, p[i]) : p[i]);
+      });
+      if constexpr (!Kernel::spline_gradient)
+        unrolled<dim>([&](auto i) REPOSE_INLINE {
+          add(std::integral_constant<std::size_t, T::force + i>{},
+              xsimd::fma(of(C::force(i, 1)), dy, f[i]));
+        });
+      if constexpr (averages) add(std::integral_constant<std::size_t, T::extra>{}, of(C::E));
     });
     if constexpr (Kernel::spline_gradient)
       add_force_by_slopes(at.w, Kernel::slopes_of_point(t_x, t_y), c, lane);
   }
 
-  REPOSE_INLINE void add_to(Tile& tile, std::size_t node) const {
+  REPOSE_INLINE void add_to(TileOf<dim>& tile, std::size_t node) const {
     unrolled<channels>([&](auto c) REPOSE_INLINE {
       unrolled<Kernel::rows>([&](auto row) REPOSE_INLINE {
         double* at = tile[c].data() + node + row * tile_stride;
@@ -93,36 +107,56 @@ class Accumulator {
   }
 
  private:
-  /// c_fx w′(ξ) w(η) + c_fy w(ξ) w′(η).
+  /// c_fx w′(ξ) w(η) + c_fy w(ξ) w′(η), in space + c_f w(ξ) w(η).
   REPOSE_INLINE void add_force_by_slopes(const RowPair& w, const RowPair& slope,
                                          const double (*c)[Pack::size], std::size_t lane) {
     const auto of = [&](std::size_t k) { return Pack(c[k][lane]); };
     const Pack w_x = w.x_repeated();
     const Pack slope_x = slope.x_repeated();
-    const Pack fx_x = of(C_FXX) * slope_x;
-    const Pack fx_y = of(C_FXY) * w_x;
-    const Pack fy_x = of(C_FXY) * slope_x;
-    const Pack fy_y = of(C_FYY) * w_x;
+    Pack f_x[dim], f_y[dim];
+    unrolled<dim>([&](auto i) REPOSE_INLINE {
+      f_x[i] = of(C::force(i, 0)) * slope_x;
+      if constexpr (dim == 3) f_x[i] = xsimd::fma(of(C::F_constant + i), w_x, f_x[i]);
+      f_y[i] = of(C::force(i, 1)) * w_x;
+    });
     unrolled<packs_per_stencil>([&](auto k) REPOSE_INLINE {
       constexpr int row = static_cast<int>(k * rows_per_pack);
       const Pack w_y = w.template y_spread<row>();
       const Pack slope_y = slope.template y_spread<row>();
-      Pack& fx = sum_[T_FX * packs_per_stencil + k];
-      Pack& fy = sum_[T_FY * packs_per_stencil + k];
-      fx = xsimd::fma(w_y, fx_x, xsimd::fma(slope_y, fx_y, fx));
-      fy = xsimd::fma(w_y, fy_x, xsimd::fma(slope_y, fy_y, fy));
+      unrolled<dim>([&](auto i) REPOSE_INLINE {
+        Pack& sum = sum_[(T::force + i) * packs_per_stencil + k];
+        sum = xsimd::fma(w_y, f_x[i], xsimd::fma(slope_y, f_y[i], sum));
+      });
     });
   }
 
-  static constexpr std::size_t channels = averages ? tile_channels : T_EXTRA;
+  static constexpr std::size_t channels = averages ? T::count : T::extra;
   Pack sum_[channels * packs_per_stencil];
 };
 
+/// A field at the points of a pack, in `dim` dimensions.
+template <int dim>
+using MomentsIn = std::conditional_t<dim == 2, Moments, SpaceMoments>;
+
+/// The gradient's row of a velocity component from its moments.
+template <std::size_t axis>
+const Pack& derivative(const Moments& m) {
+  static_assert(axis < 2);
+  return axis == 0 ? m.dx : m.dy;
+}
+template <std::size_t axis>
+const Pack& derivative(const SpaceMoments& m) {
+  return axis == 0 ? m.dx : axis == 1 ? m.dy : m.dz;
+}
+
 }  // namespace
 
-template <class Kernel, bool affine, bool averages>
-void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    const double* elastic, Tile& tile) {
+template <class Kernel, bool affine, bool averages, int dim>
+void points_to_tile(const PointsOf<dim>& points, const Range& range, double h,
+                    const std::array<int, Shape<dim>::axes>& origin, const double* elastic,
+                    TileOf<dim>& tile) {
+  using F = Layout<dim>;
+  using C = Coefficient<dim>;
   const double inv_h = 1.0 / h;
   // −V D⁻¹ h and the affine velocity times h: distances are in units of h
   const Pack minus_D_h(-Kernel::gradient_scale * inv_h);
@@ -132,60 +166,87 @@ void points_to_tile(const PointSet& points, const Range& range, double h, std::a
   const Pack y_1(origin[1] + 1.0);
   const std::size_t a = points.affine;
 
-  Accumulator<Kernel, averages> stencil;
+  constexpr std::size_t planes = dim == 2 ? 1 : Kernel::rows;
   constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
-  std::size_t current = nowhere;
-  for (std::size_t first = 0; first < range.count; first += Pack::size) {
-    const auto at = [&](std::size_t f) {
-      return Pack::load_aligned(points[f] + range.begin + first);
-    };
-    alignas(64) double c[C_N][Pack::size];
-    alignas(64) double tx[Pack::size], ty[Pack::size], place[Pack::size];
-    const Pack m = at(MASS);
-    const Pack V = m / at(RHO) * minus_D_h;
-    m.store_aligned(c[C_M]);
-    if constexpr (averages) (m * Pack::load_aligned(elastic + first)).store_aligned(c[C_E]);
-    (m * at(VX)).store_aligned(c[C_PX]);
-    (m * at(VY)).store_aligned(c[C_PY]);
-    if constexpr (affine) {
-      const Pack mh = m * cell;
-      (mh * at(a)).store_aligned(c[C_XX]);
-      (mh * at(a + 1)).store_aligned(c[C_XY]);
-      (mh * at(a + 2)).store_aligned(c[C_YX]);
-      (mh * at(a + 3)).store_aligned(c[C_YY]);
-    }
-    (V * at(points.force_stress[0])).store_aligned(c[C_FXX]);
-    (V * at(points.force_stress[1])).store_aligned(c[C_FYY]);
-    (V * at(points.force_stress[2])).store_aligned(c[C_FXY]);
-    const Pack x = at(X) * Pack(inv_h);
-    const Pack y = at(Y) * Pack(inv_h);
-    const Pack anchor_x = Kernel::anchor(x);
-    const Pack anchor_y = Kernel::anchor(y);
-    (x - anchor_x).store_aligned(tx);
-    (y - anchor_y).store_aligned(ty);
-    as_bits((anchor_y - y_1) * Pack(tile_stride) + (anchor_x - x_1)).store_aligned(place);
-
-    const std::size_t lanes = std::min(Pack::size, range.count - first);
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t first_node = whole_number(place[lane]);
-      if (first_node != current) {
-        if (current != nowhere) stencil.add_to(tile, current);
-        stencil.clear();
-        current = first_node;
+  for (std::size_t plane = 0; plane < planes; ++plane) {
+    Accumulator<Kernel, averages, dim> stencil;
+    std::size_t current = nowhere;
+    for (std::size_t first = 0; first < range.count; first += Pack::size) {
+      const auto at = [&](std::size_t f) {
+        return Pack::load_aligned(points[f] + range.begin + first);
+      };
+      alignas(64) double c[C::count][Pack::size];
+      alignas(64) double tx[Pack::size], ty[Pack::size], place[Pack::size];
+      Pack m = at(F::mass);
+      Pack V = m / at(F::rho) * minus_D_h;
+      const Pack x = at(F::x) * Pack(inv_h);
+      const Pack y = at(F::x + 1) * Pack(inv_h);
+      const Pack anchor_x = Kernel::anchor(x);
+      const Pack anchor_y = Kernel::anchor(y);
+      (x - anchor_x).store_aligned(tx);
+      (y - anchor_y).store_aligned(ty);
+      Pack node = (anchor_y - y_1) * Pack(tile_stride) + (anchor_x - x_1);
+      if constexpr (dim == 3) {
+        constexpr double plane_nodes = Shape<3>::tile[0] * Shape<3>::tile[1];
+        const Pack z = at(F::x + 2) * Pack(inv_h);
+        const Pack anchor_z = Kernel::anchor(z);
+        const Pack t = z - anchor_z;
+        const Pack dz = Pack(static_cast<double>(plane) - 1.0) - t;
+        const Pack w = Kernel::weights(t)[plane];
+        node = node +
+               (anchor_z - Pack(origin[2] + 1.0 - static_cast<double>(plane))) * Pack(plane_nodes);
+        Pack V_dz = V * w * dz;
+        if constexpr (Kernel::spline_gradient) V_dz = V * Kernel::slopes(t)[plane];
+        m = m * w;
+        V = V * w;
+        (V_dz * at(points.force_stress[5])).store_aligned(c[C::F_constant]);
+        (V_dz * at(points.force_stress[4])).store_aligned(c[C::F_constant + 1]);
+        (V_dz * at(points.force_stress[2])).store_aligned(c[C::F_constant + 2]);
+        (V * at(points.force_stress[5])).store_aligned(c[C::force(2, 0)]);
+        (V * at(points.force_stress[4])).store_aligned(c[C::force(2, 1)]);
+        for (std::size_t i = 0; i < dim; ++i) {
+          Pack v = at(F::v + i);
+          if constexpr (affine) v = xsimd::fma(cell * dz, at(a + dim * i + 2), v);
+          (m * v).store_aligned(c[C::P + i]);
+        }
+      } else {
+        for (std::size_t i = 0; i < dim; ++i) (m * at(F::v + i)).store_aligned(c[C::P + i]);
       }
-      stencil.template add<affine>(tx[lane], ty[lane], c, lane);
+      as_bits(node).store_aligned(place);
+      m.store_aligned(c[C::M]);
+      if constexpr (averages) (m * Pack::load_aligned(elastic + first)).store_aligned(c[C::E]);
+      if constexpr (affine) {
+        const Pack mh = m * cell;
+        for (std::size_t i = 0; i < dim; ++i)
+          for (std::size_t j = 0; j < 2; ++j)
+            (mh * at(a + dim * i + j)).store_aligned(c[C::A + 2 * i + j]);
+      }
+      (V * at(points.force_stress[0])).store_aligned(c[C::force(0, 0)]);
+      (V * at(points.force_stress[1])).store_aligned(c[C::force(1, 1)]);
+      (V * at(points.force_stress[dim == 2 ? 2 : 3])).store_aligned(c[C::force(0, 1)]);
+
+      const std::size_t lanes = std::min(Pack::size, range.count - first);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t first_node = whole_number(place[lane]);
+        if (first_node != current) {
+          if (current != nowhere) stencil.add_to(tile, current);
+          stencil.clear();
+          current = first_node;
+        }
+        stencil.template add<affine>(tx[lane], ty[lane], c, lane);
+      }
     }
+    if (current != nowhere) stencil.add_to(tile, current);
   }
-  if (current != nowhere) stencil.add_to(tile, current);
 }
 
-template <class Kernel, Keeps keeps, bool averages>
-void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
-                    const Range& range, const Retention& keep, PointSet& points, Motion motion) {
+template <class Kernel, Keeps keeps, bool averages, int dim>
+void tile_to_points(const VelocityTileOf<dim>& tile,
+                    const std::array<int, Shape<dim>::axes>& origin, double h, const Range& range,
+                    const Retention& keep, PointsOf<dim>& points, const MotionOf<dim>& motion) {
+  using F = Layout<dim>;
   const Pack inv_h(1.0 / h);
   const Pack inv_D_h(Kernel::gradient_scale / h);
-  const Pack x_0(static_cast<double>(origin[0]));
-  const Pack y_0(static_cast<double>(origin[1]));
   const Pack keep_v(keep.velocity);
   const Pack keep_A(keep.gradient);
   const std::size_t a = points.affine;
@@ -193,64 +254,80 @@ void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double 
     const std::size_t s = range.begin + k;
     const auto at = [&](std::size_t f) { return Pack::load_aligned(points[f] + s); };
     const auto put = [&](std::size_t f, const Pack& x) { x.store_aligned(points[f] + s); };
-    const PackStencil<Kernel> stencil(at(X) * inv_h - x_0, at(Y) * inv_h - y_0);
-    Moments vx, vy, ux, uy;
+    /// Coordinate in units of h from the tile's first node.
+    const auto from_tile = [&](std::size_t axis) {
+      return Pack(at(F::x + axis) * inv_h - Pack(static_cast<double>(origin[axis])));
+    };
+    const auto stencil = [&] {
+      if constexpr (dim == 2)
+        return PackStencil<Kernel>(from_tile(0), from_tile(1));
+      else
+        return SpaceStencil<Kernel>(from_tile(0), from_tile(1), from_tile(2));
+    }();
+    MomentsIn<dim> v[dim], u[dim];
     Pack elastic(0.0);
-    stencil.for_each_row([&](std::size_t row, const Pack& w, const Pack& w_d) {
+    stencil.for_each_row([&](std::size_t row, const Pack& w, const auto&... w_d) {
       const std::size_t n = row * tile_stride;
-      stencil.add(tile.vx.data() + n, w, w_d, vx);
-      stencil.add(tile.vy.data() + n, w, w_d, vy);
+      unrolled<dim>([&](auto i) { stencil.add(tile.v[i].data() + n, w, w_d..., v[i]); });
       if constexpr (averages) stencil.add(tile.elastic.data() + n, w, elastic);
-      if constexpr (keeps == Keeps::velocity || keeps == Keeps::extension) {
-        stencil.add(tile.ux.data() + n, w, ux.value);
-        stencil.add(tile.uy.data() + n, w, uy.value);
-      } else if constexpr (keeps == Keeps::velocity_and_gradient) {
-        stencil.add(tile.ux.data() + n, w, w_d, ux);
-        stencil.add(tile.uy.data() + n, w, w_d, uy);
-      }
+      if constexpr (keeps == Keeps::velocity || keeps == Keeps::extension)
+        unrolled<dim>([&](auto i) { stencil.add(tile.u[i].data() + n, w, u[i].value); });
+      else if constexpr (keeps == Keeps::velocity_and_gradient)
+        unrolled<dim>([&](auto i) { stencil.add(tile.u[i].data() + n, w, w_d..., u[i]); });
     });
-    vx.value.store_aligned(motion.vx + k);
-    vy.value.store_aligned(motion.vy + k);
     if constexpr (averages) elastic.store_aligned(motion.elastic + k);
-    const Pack L[4] = {vx.dx * inv_D_h, vx.dy * inv_D_h, vy.dx * inv_D_h, vy.dy * inv_D_h};
-    if constexpr (keeps == Keeps::nothing) {
-      put(VX, vx.value);
-      put(VY, vy.value);
-    } else if constexpr (keeps == Keeps::extension) {
-      put(VX, vx.value + ux.value);
-      put(VY, vy.value + uy.value);
-    } else {
-      put(VX, vx.value + keep_v * (at(VX) - ux.value));
-      put(VY, vy.value + keep_v * (at(VY) - uy.value));
-    }
-    if constexpr (keeps == Keeps::velocity_and_gradient) {
-      const Pack U[4] = {ux.dx * inv_D_h, ux.dy * inv_D_h, uy.dx * inv_D_h, uy.dy * inv_D_h};
-      for (std::size_t i = 0; i < 4; ++i) put(a + i, L[i] + keep_A * (at(a + i) - U[i]));
-    }
-    for (std::size_t i = 0; i < 4; ++i) put(LXX + i, L[i]);
+    unrolled<dim>([&](auto i) {
+      v[i].value.store_aligned(motion.v[i] + k);
+      if constexpr (keeps == Keeps::nothing)
+        put(F::v + i, v[i].value);
+      else if constexpr (keeps == Keeps::extension)
+        put(F::v + i, v[i].value + u[i].value);
+      else
+        put(F::v + i, v[i].value + keep_v * (at(F::v + i) - u[i].value));
+      unrolled<dim>([&](auto j) {
+        const std::size_t ij = dim * i + j;
+        const Pack L = derivative<j>(v[i]) * inv_D_h;
+        if constexpr (keeps == Keeps::velocity_and_gradient)
+          put(a + ij, L + keep_A * (at(a + ij) - derivative<j>(u[i]) * inv_D_h));
+        put(F::L + ij, L);
+      });
+    });
   }
 }
 
-#define REPOSE_FROM_TILE(KERNEL, KEEPS, AVERAGES)                                                 \
-  template void tile_to_points<KERNEL, Keeps::KEEPS, AVERAGES>(                                   \
-      const VelocityTile&, std::array<int, 2>, double, const Range&, const Retention&, PointSet&, \
-      Motion);
-#define REPOSE_TO_TILE(KERNEL, AFFINE, AVERAGES)          \
-  template void points_to_tile<KERNEL, AFFINE, AVERAGES>( \
-      const PointSet&, const Range&, double, std::array<int, 2>, const double*, Tile&);
-#define REPOSE_TRANSFERS(KERNEL, AVERAGES)                  \
-  REPOSE_TO_TILE(KERNEL, true, AVERAGES)                    \
-  REPOSE_TO_TILE(KERNEL, false, AVERAGES)                   \
-  REPOSE_FROM_TILE(KERNEL, nothing, AVERAGES)               \
-  REPOSE_FROM_TILE(KERNEL, velocity, AVERAGES)              \
-  REPOSE_FROM_TILE(KERNEL, velocity_and_gradient, AVERAGES) \
-  REPOSE_FROM_TILE(KERNEL, extension, AVERAGES)             \
-  REPOSE_TO_TILE(SplineGradient<KERNEL>, true, AVERAGES)    \
-  REPOSE_FROM_TILE(SplineGradient<KERNEL>, nothing, AVERAGES)
-REPOSE_TRANSFERS(CubicKernel, true)
-REPOSE_TRANSFERS(CubicKernel, false)
-REPOSE_TRANSFERS(QuadraticKernel, true)
-REPOSE_TRANSFERS(QuadraticKernel, false)
+#define REPOSE_FROM_TILE(KERNEL, KEEPS, AVERAGES, DIM)                               \
+  template void tile_to_points<KERNEL, Keeps::KEEPS, AVERAGES, DIM>(                 \
+      const VelocityTileOf<DIM>&, const std::array<int, DIM>&, double, const Range&, \
+      const Retention&, PointsOf<DIM>&, const MotionOf<DIM>&);
+#define REPOSE_TO_TILE(KERNEL, AFFINE, AVERAGES, DIM)                                              \
+  template void points_to_tile<KERNEL, AFFINE, AVERAGES, DIM>(const PointsOf<DIM>&, const Range&,  \
+                                                              double, const std::array<int, DIM>&, \
+                                                              const double*, TileOf<DIM>&);
+#define REPOSE_TRANSFERS(KERNEL, AVERAGES, DIM)                  \
+  REPOSE_TO_TILE(KERNEL, true, AVERAGES, DIM)                    \
+  REPOSE_TO_TILE(KERNEL, false, AVERAGES, DIM)                   \
+  REPOSE_FROM_TILE(KERNEL, nothing, AVERAGES, DIM)               \
+  REPOSE_FROM_TILE(KERNEL, velocity, AVERAGES, DIM)              \
+  REPOSE_FROM_TILE(KERNEL, velocity_and_gradient, AVERAGES, DIM) \
+  REPOSE_TO_TILE(SplineGradient<KERNEL>, true, AVERAGES, DIM)    \
+  REPOSE_FROM_TILE(SplineGradient<KERNEL>, nothing, AVERAGES, DIM)
+#define REPOSE_TO_SPACE_WITH_EXTRA(KERNEL) \
+  REPOSE_TO_TILE(KERNEL, true, true, 3)    \
+  REPOSE_TO_TILE(KERNEL, false, true, 3)   \
+  REPOSE_TO_TILE(SplineGradient<KERNEL>, true, true, 3)
+#define REPOSE_PLANE_TRANSFERS(KERNEL, AVERAGES) \
+  REPOSE_TRANSFERS(KERNEL, AVERAGES, 2)          \
+  REPOSE_FROM_TILE(KERNEL, extension, AVERAGES, 2)
+REPOSE_PLANE_TRANSFERS(CubicKernel, true)
+REPOSE_PLANE_TRANSFERS(CubicKernel, false)
+REPOSE_PLANE_TRANSFERS(QuadraticKernel, true)
+REPOSE_PLANE_TRANSFERS(QuadraticKernel, false)
+REPOSE_TRANSFERS(CubicKernel, false, 3)
+REPOSE_TRANSFERS(QuadraticKernel, false, 3)
+REPOSE_TO_SPACE_WITH_EXTRA(CubicKernel)
+REPOSE_TO_SPACE_WITH_EXTRA(QuadraticKernel)
+#undef REPOSE_TO_SPACE_WITH_EXTRA
+#undef REPOSE_PLANE_TRANSFERS
 #undef REPOSE_TRANSFERS
 #undef REPOSE_TO_TILE
 #undef REPOSE_FROM_TILE

@@ -11,6 +11,8 @@
 /// Where pressures are averaged (pressure_averaging.hpp), also
 ///   e_i = Σ w m_p e_p/m_i,   ē_p = Σ w e_i.
 ///
+/// In space a stencil is four of the plane's, one behind the other, each with its own weight w(ζ).
+///
 /// To the grid, the lanes of a register are the nodes of a stencil and a point's contributions stay
 /// in registers as long as the next point has the same stencil. From the grid, the lanes are
 /// points, each of which looks its nodes up in registers that hold a row of the tile.
@@ -37,28 +39,34 @@ enum class Keeps : std::uint8_t { nothing, velocity, velocity_and_gradient, exte
 /// Adds the points of a range to the tile of their block. `origin` is the index of the tile's first
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.
 /// `averages`: `elastic`, the range's elastic volume strains, go along; else it is not read.
-template <class Kernel, bool affine, bool averages>
-void points_to_tile(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    const double* elastic, Tile& tile);
+template <class Kernel, bool affine, bool averages, int dim>
+void points_to_tile(const PointsOf<dim>& points, const Range& range, double h,
+                    const std::array<int, Shape<dim>::axes>& origin, const double* elastic,
+                    TileOf<dim>& tile);
 
 /// Velocity at the nodes of a tile, before (u) and after (v) forces.
-struct VelocityTile {
-  alignas(64) std::array<double, tile_nodes> vx, vy, ux, uy;
-  std::array<double, tile_nodes> elastic;  ///< only where pressures are averaged
+template <int dim>
+struct VelocityTileOf {
+  alignas(64) std::array<TileField<dim>, Shape<dim>::axes> v, u;
+  TileField<dim> elastic;  ///< only where pressures are averaged
 };
+using VelocityTile = VelocityTileOf<2>;
 
 /// The velocity Σ w v_i that moves a range's points, from its first one on, and the mean elastic
 /// volume strain around them.
-struct Motion {
-  double *vx, *vy;
+template <int dim>
+struct MotionOf {
+  std::array<double*, Shape<dim>::axes> v;
   double* elastic = nullptr;  ///< ē; only where pressures are averaged
 };
+using Motion = MotionOf<2>;
 
-/// Interpolates velocity and velocity gradient to the points of a range (VX, VY, LXX … LYY, the
+/// Interpolates velocity and velocity gradient to the points of a range (their fields v and L, the
 /// affine velocity) and gives the velocity that moves them, with the padding of the range treated
-/// like points. Where nothing is kept, ux and uy are not read.
-template <class Kernel, Keeps keeps, bool averages>
-void tile_to_points(const VelocityTile& tile, std::array<int, 2> origin, double h,
-                    const Range& range, const Retention& keep, PointSet& points, Motion motion);
+/// like points. Where nothing is kept, u is not read.
+template <class Kernel, Keeps keeps, bool averages, int dim>
+void tile_to_points(const VelocityTileOf<dim>& tile,
+                    const std::array<int, Shape<dim>::axes>& origin, double h, const Range& range,
+                    const Retention& keep, PointsOf<dim>& points, const MotionOf<dim>& motion);
 
 }  // namespace repose::mpm

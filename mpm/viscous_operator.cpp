@@ -53,8 +53,8 @@ void WallMirror::add_wall(Grid& grid, const Wall& wall, bool normal_is_x, int li
   const double tangential = sticks ? -1.0 : 1.0;
   const int block = normal_is_x ? grid.block_of_cell_x(line) : grid.block_of_cell_y(line);
   for (const NodeBlock& nb : grid.node_blocks) {
-    if ((normal_is_x ? nb.bx : nb.by) != block) continue;
-    const int first = normal_is_x ? Grid::first_y(nb.by) : Grid::first_x(nb.bx);
+    if (nb.at[normal_is_x ? 0 : 1] != block) continue;
+    const int first = normal_is_x ? Grid::first_y(nb.at[1]) : Grid::first_x(nb.at[0]);
     const int count = normal_is_x ? block_ny : block_nx;
     for (int along = first; along < first + count; ++along) {
       const auto at = [&](int offset) {
@@ -183,7 +183,7 @@ void ViscousOperator::sum_tiles(NodeVector& f) {
         const std::int32_t source = nb.point_block[static_cast<std::size_t>((dy + 1) * 3 + dx + 1)];
         if (source < 0) continue;
         const VectorTile& tile = tiles_[static_cast<std::size_t>(source)];
-        for_each_shared_row(dx, dy, [&](std::size_t node, std::size_t entry, auto columns) {
+        for_each_shared_row<2>({dx, dy}, [&](std::size_t node, std::size_t entry, auto columns) {
           for (std::size_t i = 0; i < columns; ++i) {
             sum.x[node + i] += tile.x[entry + i];
             sum.y[node + i] += tile.y[entry + i];

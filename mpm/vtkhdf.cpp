@@ -161,9 +161,10 @@ void write_fields(hid_t group, const FrameView& frame) {
   const std::size_t n = frame.x_m.size();
   for (const auto& field : frame.scalars) write_dataset<double>(group, field.name, field.values);
   for (const auto& field : frame.vectors)
-    write_columns(group, field.name, n, {field.x, field.y, {}});
+    write_columns(group, field.name, n, {field.x, field.y, field.z});
   for (const auto& field : frame.tensors)
-    write_columns(group, field.name, n, {field.xx, field.yy, field.zz, field.xy, {}, {}});
+    write_columns(group, field.name, n,
+                  {field.xx, field.yy, field.zz, field.xy, field.yz, field.zx});
   for (const auto& field : frame.integers)
     write_dataset<std::int32_t>(group, field.name, field.values);
 }
@@ -187,6 +188,10 @@ class Rules {
       throw std::invalid_argument("frame: " + name + " has " + std::to_string(size) +
                                   " values for " + std::to_string(points_) + " points");
   }
+  /// Of what stands for zeros where it is empty.
+  void check_size_if_any(const std::string& name, std::size_t size) const {
+    if (size != 0) check_size(name, size);
+  }
 
  private:
   std::size_t points_;
@@ -199,6 +204,7 @@ void check_view(const FrameView& frame) {
     throw std::invalid_argument("frame: its time is " + std::to_string(frame.time_s) + " s");
   Rules rules(frame.x_m.size());
   rules.check_size("y_m", frame.y_m.size());
+  rules.check_size_if_any("z_m", frame.z_m.size());
   for (const auto& field : frame.scalars) {
     rules.check_name(field.name);
     rules.check_size(field.name, field.values.size());
@@ -206,11 +212,13 @@ void check_view(const FrameView& frame) {
   for (const auto& field : frame.vectors) {
     rules.check_name(field.name);
     for (const auto& part : {field.x, field.y}) rules.check_size(field.name, part.size());
+    rules.check_size_if_any(field.name, field.z.size());
   }
   for (const auto& field : frame.tensors) {
     rules.check_name(field.name);
     for (const auto& part : {field.xx, field.yy, field.zz, field.xy})
       rules.check_size(field.name, part.size());
+    for (const auto& part : {field.yz, field.zx}) rules.check_size_if_any(field.name, part.size());
   }
   for (const auto& field : frame.integers) {
     rules.check_name(field.name);
@@ -311,7 +319,7 @@ std::string vtkhdf_image(const FrameView& frame) {
   {
     const Handle root = create_group(file, "VTKHDF");
     write_layout(root);
-    write_columns(root, "Points", frame.x_m.size(), {frame.x_m, frame.y_m, {}});
+    write_columns(root, "Points", frame.x_m.size(), {frame.x_m, frame.y_m, frame.z_m});
     write_cells(root, frame.x_m.size());
     const Handle fields = create_group(root, "PointData");
     write_fields(fields, frame);

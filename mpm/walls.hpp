@@ -21,10 +21,14 @@ namespace repose::mpm {
 
 struct Walls {
   Wall left, right, floor, top;
+  Wall near{}, far{};  ///< across z, in space
+  /// The walls at the low and at the high end of an axis.
+  const Wall& low(std::size_t axis) const { return axis == 0 ? left : axis == 1 ? floor : near; }
+  const Wall& high(std::size_t axis) const { return axis == 0 ? right : axis == 1 ? top : far; }
   bool periodic() const { return left.kind == Wall::Kind::periodic; }
 };
 
-/// What the walls do to the motion of the nodes, per metre of depth.
+/// What the walls do to the motion of the nodes, in the plane per metre of depth.
 struct WallEffect {
   double kinetic_before = 0.0;  ///< change of ½Σmu², velocities before forces [J]
   double kinetic_after = 0.0;   ///< change of ½Σmv², velocities after forces [J]
@@ -55,8 +59,9 @@ struct MirroredTriple {
 };
 
 /// Applies the walls to the node velocities before and after forces. `record`, if given, is filled
-/// with what they did, in its order.
-WallEffect apply_walls(Grid& grid, const Walls& walls,
+/// with what they did, in its order (in the plane).
+template <int dim>
+WallEffect apply_walls(GridOf<dim>& grid, const Walls& walls,
                        std::vector<MirroredTriple>* record = nullptr);
 
 /// Does to another velocity, momentum of the points over mass of the nodes, what the walls did to

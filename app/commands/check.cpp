@@ -23,6 +23,14 @@ std::string grouped(double x) {
 /// 2 significant digits: "about" figures must not look exact.
 double rounded(double x) { return std::stod(fmt::format("{:.1e}", x)); }
 
+/// 192 x 90
+std::string cells_of(const mpm::Scene& scene) {
+  std::string text;
+  for (std::size_t k = 0; k < scene.dimensions(); ++k)
+    text += fmt::format("{}{}", k > 0 ? " x " : "", std::lround(scene.domain[k] / scene.h));
+  return text;
+}
+
 ExitCode check_scene(InputFile& input, const CommonOptions& options) {
   const SceneFile file = read_scene(input);
   const mpm::Scene& scene = file.scene;
@@ -53,15 +61,15 @@ ExitCode check_scene(InputFile& input, const CommonOptions& options) {
     fmt::print(
         "{}: a sound scene, \"{}\"\n"
         "  points      {}\n"
-        "  live cells  {} of {} x {} at the start\n"
+        "  live cells  {} of {} at the start\n"
         "  first step  {:.3g} s{}\n"
         "  steps       about {} for {:g} s\n"
         "  memory      about {:.2g} MB\n"
         "  run time    about {}\n",
         input.name(), scene.name, grouped(static_cast<double>(estimate.points)),
-        grouped(static_cast<double>(estimate.live_cells)), std::lround(scene.domain[0] / scene.h),
-        std::lround(scene.domain[1] / scene.h), estimate.first_dt_s, scene.dt ? ", fixed" : "",
-        grouped(rounded(estimate.steps)), scene.end_time, estimate.memory_MB,
+        grouped(static_cast<double>(estimate.live_cells)), cells_of(scene), estimate.first_dt_s,
+        scene.dt ? ", fixed" : "", grouped(rounded(estimate.steps)), scene.end_time,
+        estimate.memory_MB,
         duration_text(estimate.seconds < 10.0 ? rounded(estimate.seconds) : estimate.seconds));
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
   return ExitCode::done;

@@ -23,8 +23,8 @@ void expect_same(const SceneFile& a, const SceneFile& b) {
   EXPECT_EQ(s.gravity, t.gravity);
   EXPECT_EQ(s.tilt_deg, t.tilt_deg);
   EXPECT_EQ(s.domain, t.domain);
-  for (const auto edge :
-       {&mpm::Scene::floor, &mpm::Scene::left, &mpm::Scene::right, &mpm::Scene::top}) {
+  for (const auto edge : {&mpm::Scene::floor, &mpm::Scene::left, &mpm::Scene::right,
+                          &mpm::Scene::top, &mpm::Scene::near, &mpm::Scene::far}) {
     EXPECT_EQ((s.*edge).kind, (t.*edge).kind);
     EXPECT_EQ((s.*edge).friction, (t.*edge).friction);
   }
@@ -43,6 +43,12 @@ void expect_same(const SceneFile& a, const SceneFile& b) {
     EXPECT_EQ(p.name, q.name);
     EXPECT_EQ(p.origin, q.origin);
     EXPECT_EQ(p.size, q.size);
+    ASSERT_EQ(p.disc.has_value(), q.disc.has_value());
+    if (p.disc) {
+      EXPECT_EQ(p.disc->centre, q.disc->centre);
+      EXPECT_EQ(p.disc->radius, q.disc->radius);
+      EXPECT_EQ(p.disc->hole, q.disc->hole);
+    }
     EXPECT_EQ(p.velocity, q.velocity);
     EXPECT_EQ(p.spin, q.spin);
     EXPECT_EQ(p.lithostatic, q.lithostatic);

@@ -26,8 +26,8 @@ void expect_sorted(const Grid& grid, const PointSet& points, std::size_t body) {
     int last_key = -1;
     std::int64_t last_id = -1;
     for (std::size_t s = range.begin; s < range.begin + range.count; ++s) {
-      const int i = cell(points[X][s]) - Grid::first_x(pb.bx);
-      const int j = cell(points[Y][s]) - Grid::first_y(pb.by);
+      const int i = cell(points[X][s]) - Grid::first_x(pb.at[0]);
+      const int j = cell(points[Y][s]) - Grid::first_y(pb.at[1]);
       EXPECT_TRUE(i >= 0 && i < block_nx && j >= 0 && j < block_ny) << "in its block";
       const int key = j * block_nx + i;
       EXPECT_GE(key, last_key) << "sorted by cell";
@@ -108,8 +108,8 @@ TEST(GridTest, EveryBoxHasItsGhosts) {
       grid.sort(bodies);
       expect_sorted(grid, bodies[0], 0);
       for (const PointBlock& pb : grid.point_blocks) {
-        const int i = Grid::first_x(pb.bx);
-        const int j = Grid::first_y(pb.by);
+        const int i = Grid::first_x(pb.at[0]);
+        const int j = Grid::first_y(pb.at[1]);
         // all nodes that a stencil can reach within a cell of drift, the box's ghosts included
         for (int node_j = std::max(j - 2, -1); node_j <= std::min(j + block_ny + 2, ny + 1);
              ++node_j)
@@ -117,8 +117,10 @@ TEST(GridTest, EveryBoxHasItsGhosts) {
                ++node_i) {
             const Grid::NodeRef at = grid.node(node_i, node_j);
             ASSERT_NE(at.block, nullptr) << nx << " x " << ny << ": " << node_i << ", " << node_j;
-            EXPECT_EQ(Grid::first_x(at.block->bx) + static_cast<int>(at.place) % block_nx, node_i);
-            EXPECT_EQ(Grid::first_y(at.block->by) + static_cast<int>(at.place) / block_nx, node_j);
+            EXPECT_EQ(Grid::first_x(at.block->at[0]) + static_cast<int>(at.place) % block_nx,
+                      node_i);
+            EXPECT_EQ(Grid::first_y(at.block->at[1]) + static_cast<int>(at.place) / block_nx,
+                      node_j);
           }
       }
     }
@@ -133,8 +135,8 @@ TEST(GridTest, NeighboursKnowEachOther) {
       const std::int32_t n = grid.point_blocks[p].node_block[k];
       if (n < 0) continue;
       const NodeBlock& nb = grid.node_blocks[static_cast<std::size_t>(n)];
-      EXPECT_EQ(nb.bx, grid.point_blocks[p].bx + static_cast<int>(k) % 3 - 1);
-      EXPECT_EQ(nb.by, grid.point_blocks[p].by + static_cast<int>(k) / 3 - 1);
+      EXPECT_EQ(nb.at[0], grid.point_blocks[p].at[0] + static_cast<int>(k) % 3 - 1);
+      EXPECT_EQ(nb.at[1], grid.point_blocks[p].at[1] + static_cast<int>(k) / 3 - 1);
       EXPECT_EQ(nb.point_block[8 - k], static_cast<std::int32_t>(p));
     }
 }
@@ -149,8 +151,8 @@ TEST(GridTest, RestoreBringsBackWhatSortMade) {
   ASSERT_EQ(other.node_blocks.size(), grid.node_blocks.size());
   EXPECT_EQ(other.tiles.size(), grid.tiles.size());
   for (std::size_t k = 0; k < grid.node_blocks.size(); ++k) {
-    EXPECT_EQ(other.node_blocks[k].bx, grid.node_blocks[k].bx);
-    EXPECT_EQ(other.node_blocks[k].by, grid.node_blocks[k].by);
+    EXPECT_EQ(other.node_blocks[k].at[0], grid.node_blocks[k].at[0]);
+    EXPECT_EQ(other.node_blocks[k].at[1], grid.node_blocks[k].at[1]);
     EXPECT_EQ(other.node_blocks[k].point_block, grid.node_blocks[k].point_block);
   }
   for (std::size_t k = 0; k < grid.point_blocks.size(); ++k)

@@ -193,7 +193,7 @@ class Model {
     batch.count = 1;
     batch.dt = dt;
     for (std::size_t k = 0; k < 4; ++k) batch.strain[k] = motion[k].data();
-    batch.spin = motion[4].data();
+    batch.spin = {motion[4].data()};
     batch.density = field[RHO].data();
     for (std::size_t k = 0; k < 4; ++k) batch.stress[k] = field[SXX + k].data();
     for (std::size_t k = 0; k < max_state; ++k) batch.state[k] = field[STATE + k].data();

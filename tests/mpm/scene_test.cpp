@@ -49,7 +49,7 @@ TEST(Scene, a_sound_one_passes) {
   EXPECT_EQ(complaint(sound()), "");
   EXPECT_EQ(complaint(clay()), "");
   EXPECT_EQ(point_spacing(sound()), 0.003125);
-  EXPECT_EQ(point_lattice(sound(), sound().bodies[0]), (std::array<std::int64_t, 2>{64, 128}));
+  EXPECT_EQ(point_lattice(sound(), sound().bodies[0]), (std::array<std::int64_t, 3>{64, 128, 1}));
 }
 
 TEST(Scene, numbers_out_of_range) {

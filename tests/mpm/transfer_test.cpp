@@ -164,14 +164,14 @@ TYPED_TEST(TransferTest, ALinearFieldGoesToTheGridAndBackExactly) {
   VelocityTile velocity;
   for (std::size_t n = 0; n < tile_nodes; ++n) {
     const double m = tile[T_MASS][n];
-    velocity.vx[n] = m > 0.0 ? tile[T_PX][n] / m : 0.0;
-    velocity.vy[n] = m > 0.0 ? tile[T_PY][n] / m : 0.0;
+    velocity.v[0][n] = m > 0.0 ? tile[T_PX][n] / m : 0.0;
+    velocity.v[1][n] = m > 0.0 ? tile[T_PY][n] / m : 0.0;
     // |v| <= 10 here. A node that only sees the ends of supports (weight w) has terms of size w
     // known to eps·1: relative eps/w. They are exact where they count: w > 1e-6.
     if (m < 1e-6) continue;
     const double x = this->x_of(n), y = this->y_of(n);
-    EXPECT_NEAR(velocity.vx[n], a[0] + B[0][0] * x + B[0][1] * y, 10 * 1e-9);
-    EXPECT_NEAR(velocity.vy[n], a[1] + B[1][0] * x + B[1][1] * y, 10 * 1e-9);
+    EXPECT_NEAR(velocity.v[0][n], a[0] + B[0][0] * x + B[0][1] * y, 10 * 1e-9);
+    EXPECT_NEAR(velocity.v[1][n], a[1] + B[1][0] * x + B[1][1] * y, 10 * 1e-9);
   }
   const PointSet before = points;
   gather<TypeParam>(velocity, points);
@@ -191,11 +191,11 @@ TYPED_TEST(TransferTest, GatherIsTheBruteForceSum) {
   VelocityTile tile;
   reference::Grid grid(h, Named<TypeParam>::kernel, TypeParam::spline_gradient);
   for (std::size_t n = 0; n < tile_nodes; ++n) {
-    tile.vx[n] = sign(random);
-    tile.vy[n] = sign(random);
+    tile.v[0][n] = sign(random);
+    tile.v[1][n] = sign(random);
     grid.nodes[{origin[0] + static_cast<int>(n) % tile_stride,
                 origin[1] + static_cast<int>(n) / tile_stride}]
-        .velocity = {tile.vx[n], tile.vy[n]};
+        .velocity = {tile.v[0][n], tile.v[1][n]};
   }
   gather<TypeParam>(tile, points);
   for (std::size_t s = 0; s < points.count; ++s) {

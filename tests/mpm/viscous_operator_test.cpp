@@ -65,8 +65,8 @@ class Patch {
     for (const std::size_t k : op_.live())
       for (int n = 0; n < block_nodes; ++n) {
         const std::array<double, 2> at =
-            f((Grid::first_x(grid_.node_blocks[k].bx) + n % block_nx) * h,
-              (Grid::first_y(grid_.node_blocks[k].by) + n / block_nx) * h);
+            f((Grid::first_x(grid_.node_blocks[k].at[0]) + n % block_nx) * h,
+              (Grid::first_y(grid_.node_blocks[k].at[1]) + n / block_nx) * h);
         v[k].x[static_cast<std::size_t>(n)] = at[0];
         v[k].y[static_cast<std::size_t>(n)] = at[1];
       }

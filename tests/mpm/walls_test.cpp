@@ -37,10 +37,10 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
     for (const auto& [place, node] : nodes.nodes) {
       const Grid::NodeRef at = grid_.node(place.first, place.second);
       at.block->mass[at.place] = at.block->mirrored_mass[at.place] = node.m;
-      at.block->ux[at.place] = node.momentum[0] / node.m;
-      at.block->uy[at.place] = node.momentum[1] / node.m;
-      at.block->vx[at.place] = kick * node.momentum[0] / node.m;
-      at.block->vy[at.place] = kick * node.momentum[1] / node.m;
+      at.block->u[0][at.place] = node.momentum[0] / node.m;
+      at.block->u[1][at.place] = node.momentum[1] / node.m;
+      at.block->v[0][at.place] = kick * node.momentum[0] / node.m;
+      at.block->v[1][at.place] = kick * node.momentum[1] / node.m;
     }
   }
   /// A field without any order: every node for itself.
@@ -50,7 +50,7 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
     std::uniform_real_distribution<double> sign(-1.0, 1.0);
     for (NodeBlock& nb : grid_.node_blocks)
       for (std::size_t n = 0; n < block_nodes; ++n)
-        for (auto* values : {&nb.ux, &nb.uy, &nb.vx, &nb.vy})
+        for (auto* values : {&nb.u[0], &nb.u[1], &nb.v[0], &nb.v[1]})
           (*values)[n] = nb.mass[n] > 0.0 ? sign(random) : 0.0;
   }
   reference::Vector velocity_at(double x, double y) { return motion_at(x, y).first; }
@@ -59,9 +59,9 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
     for (const NodeBlock& nb : grid_.node_blocks)
       for (std::size_t n = 0; n < block_nodes; ++n)
         nodes
-            .nodes[{Grid::first_x(nb.bx) + static_cast<int>(n) % block_nx,
-                    Grid::first_y(nb.by) + static_cast<int>(n) / block_nx}]
-            .velocity = {nb.vx[n], nb.vy[n]};
+            .nodes[{Grid::first_x(nb.at[0]) + static_cast<int>(n) % block_nx,
+                    Grid::first_y(nb.at[1]) + static_cast<int>(n) / block_nx}]
+            .velocity = {nb.v[0][n], nb.v[1][n]};
     std::pair<reference::Vector, reference::Matrix> found;
     nodes.gather({x, y}, found.first, found.second);
     return found;
@@ -73,17 +73,17 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
     Sums s;
     for (const NodeBlock& nb : grid_.node_blocks)
       for (std::size_t n = 0; n < block_nodes; ++n) {
-        s.px += nb.mass[n] * nb.vx[n];
-        s.py += nb.mass[n] * nb.vy[n];
-        s.before += 0.5 * nb.mass[n] * (nb.ux[n] * nb.ux[n] + nb.uy[n] * nb.uy[n]);
-        s.after += 0.5 * nb.mass[n] * (nb.vx[n] * nb.vx[n] + nb.vy[n] * nb.vy[n]);
+        s.px += nb.mass[n] * nb.v[0][n];
+        s.py += nb.mass[n] * nb.v[1][n];
+        s.before += 0.5 * nb.mass[n] * (nb.u[0][n] * nb.u[0][n] + nb.u[1][n] * nb.u[1][n]);
+        s.after += 0.5 * nb.mass[n] * (nb.v[0][n] * nb.v[0][n] + nb.v[1][n] * nb.v[1][n]);
       }
     return s;
   }
   std::vector<double> node_velocities() const {
     std::vector<double> all;
     for (const NodeBlock& nb : grid_.node_blocks)
-      for (const auto* values : {&nb.ux, &nb.uy, &nb.vx, &nb.vy})
+      for (const auto* values : {&nb.u[0], &nb.u[1], &nb.v[0], &nb.v[1]})
         all.insert(all.end(), values->begin(), values->end());
     return all;
   }
@@ -289,7 +289,7 @@ TEST_P(WallsTest, MirrorRepeatsWhatTheWallsDid) {
   scramble(4);
   NodeVector copy(grid_.node_blocks.size());
   for (std::size_t k = 0; k < copy.size(); ++k)
-    copy[k] = {grid_.node_blocks[k].ux, grid_.node_blocks[k].uy};
+    copy[k] = {grid_.node_blocks[k].u[0], grid_.node_blocks[k].u[1]};
   const Wall rough{Wall::Kind::friction, 0.5};
   std::vector<MirroredTriple> record;
   apply_walls(grid_, {rough, slip, no_slip, rough}, &record);
@@ -301,8 +301,8 @@ TEST_P(WallsTest, MirrorRepeatsWhatTheWallsDid) {
   constexpr double round_off = 16.0 * std::numeric_limits<double>::epsilon();
   for (std::size_t k = 0; k < copy.size(); ++k)
     for (std::size_t n = 0; n < block_nodes; ++n) {
-      EXPECT_NEAR(copy[k].x[n], grid_.node_blocks[k].ux[n], round_off);
-      EXPECT_NEAR(copy[k].y[n], grid_.node_blocks[k].uy[n], round_off);
+      EXPECT_NEAR(copy[k].x[n], grid_.node_blocks[k].u[0][n], round_off);
+      EXPECT_NEAR(copy[k].y[n], grid_.node_blocks[k].u[1][n], round_off);
     }
 }
 
