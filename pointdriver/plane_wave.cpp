@@ -49,7 +49,7 @@ class Points {
       batch.stress[k] = stress_[k].data();
       batch.state[k] = state_[k].data();
     }
-    batch.spin = spin_.data();
+    batch.spin = {spin_.data()};
     batch.density = density_.data();
     if (!material_->update(batch).ok())
       throw InputError("law", "the law's update fails in plane shear");

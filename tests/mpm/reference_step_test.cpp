@@ -21,7 +21,7 @@ Scene melee(Kernel kernel, const Wall& sides, const Wall& base, const LawSpec& l
   scene.left = scene.right = sides;
   scene.floor = scene.top = base;
   scene.courant = 0.6;
-  const std::array<double, 2> velocities[] = {{-3, -2}, {3, -3}, {2, 3}, {-2, 3}, {4, 1}};
+  const std::array<double, 3> velocities[] = {{-3, -2}, {3, -3}, {2, 3}, {-2, 3}, {4, 1}};
   const std::array<double, 2> places[] = {{1, 1}, {17, 1}, {17, 7}, {1, 7}, {9, 4}};
   for (std::size_t b = 0; b < 5; ++b) {
     Body body = block(places[b][0] * h, places[b][1] * h, 5 * h, 5 * h, law);
