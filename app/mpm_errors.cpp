@@ -103,9 +103,12 @@ std::vector<bool> pareto_front(std::span<const SweepRun> runs, Quantity q,
   std::vector<bool> front(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
     front[i] = std::isfinite(error[i]);
-    for (std::size_t j = 0; j < runs.size(); ++j)
-      if (error[j] < error[i] && runs[j].figure("cpu_s") <= runs[i].figure("cpu_s"))
+    const double cost = runs[i].figure("cpu_s");
+    for (std::size_t j = 0; j < runs.size(); ++j) {
+      const double other = runs[j].figure("cpu_s");
+      if (error[j] <= error[i] && other <= cost && (error[j] < error[i] || other < cost))
         front[i] = false;
+    }
   }
   return front;
 }

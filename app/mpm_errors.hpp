@@ -38,7 +38,7 @@ std::optional<SweepReference> reference_of(std::span<const SweepRun> runs, const
 /// Relative error of a run; NaN where the reference has no such value.
 double error_of(const SweepRun& run, Quantity q, const SweepReference& reference, double bin);
 
-/// Which runs no other beats in both CPU seconds and this error.
+/// Which runs no other beats in CPU seconds or this error without being worse in the other.
 std::vector<bool> pareto_front(std::span<const SweepRun> runs, Quantity q,
                                const SweepReference& reference);
 

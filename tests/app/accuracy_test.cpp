@@ -93,9 +93,8 @@ TEST_F(Accuracy, RunsCoarseAndFineAndGivesAnErrorBar) {
 }
 
 TEST_F(Accuracy, RefusesBeforehandWhatTheBudgetDoesNotBuy) {
-  const std::string text =
-      complaint({"--accuracy", "0.001", "--for", "kinetic", "--budget", "0.5"});
-  EXPECT_EQ(text.find("kinetic to 0.1 % needs about "), 0u) << text;
+  const std::string text = complaint({"--accuracy", "0.01", "--for", "kinetic", "--budget", "0.5"});
+  EXPECT_EQ(text.find("kinetic to 1 % needs about "), 0u) << text;
   EXPECT_NE(text.find("more than the budget of 0.5 s; within it, about "), std::string::npos)
       << text;
   EXPECT_NE(text.find(": --accuracy 0.0"), std::string::npos) << text;

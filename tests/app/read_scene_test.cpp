@@ -137,7 +137,7 @@ TEST(ReadScene, a_disc_has_a_centre_and_a_radius) {
   const mpm::Body body = scene_of(disc).scene.bodies.at(0);
   ASSERT_TRUE(body.disc);
   EXPECT_EQ(body.disc->hole, 0.05);
-  EXPECT_EQ(body.size, (std::array{0.2, 0.2}));
+  EXPECT_EQ(body.size, (std::array{0.2, 0.2, 0.0}));
   EXPECT_DOUBLE_EQ(body.origin[1], 0.1);
   EXPECT_EQ(problems(replaced(disc, "hole = 0.05", "hole = 0.15")),
             "s.toml:9:1: hole = 0.15 is out of range: must be [0, radius = 0.1)");

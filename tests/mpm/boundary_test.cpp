@@ -119,7 +119,7 @@ TEST(ClosedBoxTest, IsThreeCellsAcrossAtLeast) {
 
 // Two bodies burst and fly out of an open box, over every edge in turn: nothing is lost unseen.
 TEST(OpenEdgeTest, WhatLeavesIsCounted) {
-  const std::array<double, 2> ways[] = {{-2, 0.1}, {2, -0.1}, {0.2, -2}, {-0.2, 2}};
+  const std::array<double, 3> ways[] = {{-2, 0.1}, {2, -0.1}, {0.2, -2}, {-0.2, 2}};
   for (const auto& way : ways)
     for (const Kernel kernel : {Kernel::cubic, Kernel::quadratic}) {
       Scene scene = empty_box(1.0, 0.8, 0.025);
