@@ -14,10 +14,10 @@
 namespace repose::app {
 
 /// What is not given: every transfer that the scene admits (a note tells of the others), the
-/// scene's kernel and points per cell, cells of 8, 4 and 2 times the scene's h (three, so that there
-/// is a reference: mpm_errors.hpp), Courant numbers of 0.8, 0.4, 0.2, 0.1 unless there are fixed
-/// steps. quick: cells of 4 h alone and Courant numbers of 0.8 and 0.4, so that the whole chart takes
-/// seconds.
+/// scene's kernel and points per cell, cells of 8, 4 and 2 times the scene's h (three, so that
+/// there is a reference: mpm_errors.hpp), Courant numbers of 0.8, 0.4, 0.2, 0.1 unless there are
+/// fixed steps. quick: cells of 4 h alone and Courant numbers of 0.8 and 0.4, so that the whole
+/// chart takes seconds.
 Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick,
                     std::vector<std::string>& notes);
 

@@ -460,10 +460,11 @@ Simulation::Snapshot Simulation::Impl<dim>::snapshot() const {
 Simulation::Snapshot Simulation::Snapshot::slice(double from, double to) const {
   using Column = std::vector<double> Snapshot::*;
   constexpr std::array<Column, 17> columns{
-      &Snapshot::shear_rate,  &Snapshot::mass,
-      &Snapshot::x_m,         &Snapshot::y_m,      &Snapshot::z_m, &Snapshot::vx,  &Snapshot::vy,
-      &Snapshot::vz,          &Snapshot::density,  &Snapshot::sxx, &Snapshot::syy, &Snapshot::szz,
-      &Snapshot::pressure_Pa, &Snapshot::mises_Pa, &Snapshot::sxy, &Snapshot::syz, &Snapshot::szx};
+      &Snapshot::shear_rate,  &Snapshot::mass,     &Snapshot::x_m, &Snapshot::y_m,
+      &Snapshot::z_m,         &Snapshot::vx,       &Snapshot::vy,  &Snapshot::vz,
+      &Snapshot::density,     &Snapshot::sxx,      &Snapshot::syy, &Snapshot::szz,
+      &Snapshot::pressure_Pa, &Snapshot::mises_Pa, &Snapshot::sxy, &Snapshot::syz,
+      &Snapshot::szx};
   Snapshot part;
   for (std::size_t k = 0; k < z_m.size(); ++k) {
     if (!(z_m[k] >= from && z_m[k] < to)) continue;

@@ -94,8 +94,8 @@ class Simulation {
   /// All points in a fixed order (their order of creation), for frames and pictures.
   struct Snapshot {
     std::vector<double> x_m, y_m, vx, vy, density, pressure_Pa, mises_Pa, sxx, syy, szz, sxy;
-    std::vector<double> shear_rate;  ///< γ̇ = √(2D′:D′) [1/s]
-    std::vector<double> mass;        ///< [kg/m], in space [kg]
+    std::vector<double> shear_rate;         ///< γ̇ = √(2D′:D′) [1/s]
+    std::vector<double> mass;               ///< [kg/m], in space [kg]
     std::vector<double> z_m, vz, syz, szx;  ///< in space, else empty
     std::vector<std::int32_t> body;
     FrameView view(double time_s) const;  ///< refers to this snapshot
