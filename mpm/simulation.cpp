@@ -238,7 +238,7 @@ Deposit Simulation::Impl<dim>::deposit() const {
     if (const Body* const cylinder = first_cylinder(scene)) {
       const std::array<double, 2>& axis = cylinder->disc->centre;
       double whole = 1.0, room = HUGE_VAL;  // up to the nearest wall that no ring is cut by
-      for (const std::size_t k : {0, 2}) {
+      for (const std::size_t k : {0U, 2U}) {
         const double c = axis[k / 2];
         room = std::min({room, scene.domain[k] - c, c == 0.0 ? HUGE_VAL : c});
         if (c == 0.0) whole *= 0.5;

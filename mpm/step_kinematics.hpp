@@ -48,7 +48,7 @@ inline StepStrain<3> step_strain(const std::array<Pack, 9>& A, bool follows_rate
   if (follows_rate) {
     const Pack volume = third * ((log[0] - A[0]) + (log[4] - A[4]) + (log[8] - A[8]));
     log = A;
-    for (const std::size_t i : {0, 4, 8}) log[i] = log[i] + volume;
+    for (const std::size_t i : {0U, 4U, 8U}) log[i] = log[i] + volume;
   }
   const auto l = [&](std::size_t i, std::size_t j) -> const Pack& { return log[3 * i + j]; };
   const Pack det = (one + a(0, 0)) * ((one + a(1, 1)) * (one + a(2, 2)) - a(1, 2) * a(2, 1)) -
