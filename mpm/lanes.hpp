@@ -146,4 +146,31 @@ inline double least(const Pack& x) {
 }
 inline double greatest(const Pack& x) { return -least(-x); }
 
+/// The larger of two; a NaN in `x` is kept, so that it cannot slip through a maximum.
+template <class T>
+T max_of(const T& largest_so_far, const T& x) {
+  return select(x > largest_so_far || x != x, x, largest_so_far);
+}
+
+/// The smaller of two; a NaN in `x` is kept.
+inline Pack min_of(const Pack& smallest_so_far, const Pack& x) {
+  return select(x < smallest_so_far || x != x, x, smallest_so_far);
+}
+
+/// The largest lane; NaN if any is.
+inline double largest(const Pack& x) {
+  alignas(Pack) std::array<double, Pack::size> lane;
+  x.store_aligned(lane.data());
+  double most = lane[0];
+  for (const double y : lane) most = max_of(most, y);
+  return most;
+}
+
+template <std::size_t n>
+Pack dot(const std::array<Pack, n>& a, const std::array<Pack, n>& b) {
+  Pack sum = a[0] * b[0];
+  for (std::size_t i = 1; i < n; ++i) sum = sum + a[i] * b[i];
+  return sum;
+}
+
 }  // namespace repose::mpm

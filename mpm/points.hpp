@@ -112,4 +112,13 @@ template <int dim>
 void rearrange(PointsOf<dim>& points, const std::vector<std::uint32_t>& order,
                const std::vector<bool>& is_padding);
 
+/// v·v of a point [m²/s²].
+template <int dim>
+double squared_speed(const PointsOf<dim>& points, std::size_t s) {
+  double v2 = 0.0;
+  for (std::size_t i = 0; i < dim; ++i)
+    v2 += points[Layout<dim>::v + i][s] * points[Layout<dim>::v + i][s];
+  return v2;
+}
+
 }  // namespace repose::mpm
