@@ -192,6 +192,9 @@ void read_step(TomlReader table, mpm::Scene& scene) {
   scene.sleep_speed = table.number({"sleep_speed", "m/s",
                                     "blocks whose points are slower come to sleep, 0 for none",
                                     not_negative, scene.sleep_speed});
+  scene.storage = static_cast<mpm::Storage>(
+      table.choice("storage", {mpm::storage_names.begin(), mpm::storage_names.end()},
+                   static_cast<std::size_t>(scene.storage)));
   // A fluid's point alone, and the bulk of all, lose √(2/3) of their step with the third direction
   // (step_size.hpp).
   if (scene.dimensions() == 3) scene.courant = 0.65;

@@ -172,6 +172,8 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
               : "") +
          line("pressure_averaging", number(scene.pressure_averaging), "0 for none") +
          line("sleep_speed", number(scene.sleep_speed), "m/s, 0: no block sleeps") +
+         line("storage", toml_string(mpm::storage_names[static_cast<std::size_t>(scene.storage)]),
+              "of points between steps") +
          line("viscosity",
               toml_string(mpm::viscosity_names[static_cast<std::size_t>(scene.viscosity)])) +
          (scene.viscosity == mpm::Viscosity::implicit_solve

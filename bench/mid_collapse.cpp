@@ -102,15 +102,15 @@ MidCollapse::MidCollapse(Scene scene, Kernel kernel, Transfer transfer, int divi
       return growth * spacing * (static_cast<double>(k % division) - 0.5 * (division - 1));
     };
     const double dx = offset(i), dy = offset(j);
-    points[X][s] = std::clamp(parent[X][from] + dx, 1e-9, width);
-    points[Y][s] = std::clamp(parent[Y][from] + dy, 1e-9, height);
-    points[VX][s] = parent[VX][from] + parent[LXX][from] * dx + parent[LXY][from] * dy;
-    points[VY][s] = parent[VY][from] + parent[LYX][from] * dx + parent[LYY][from] * dy;
-    for (std::size_t f = LXX; f < MASS; ++f) points[f][s] = parent[f][from];
+    points.set(X, s, std::clamp(parent[X][from] + dx, 1e-9, width));
+    points.set(Y, s, std::clamp(parent[Y][from] + dy, 1e-9, height));
+    points.set(VX, s, parent[VX][from] + parent[LXX][from] * dx + parent[LXY][from] * dy);
+    points.set(VY, s, parent[VY][from] + parent[LYX][from] * dx + parent[LYY][from] * dy);
+    for (std::size_t f = LXX; f < MASS; ++f) points.set(f, s, parent[f][from]);
     for (std::size_t k = 0; k < points.state_fields(); ++k)
-      points[STATE + k][s] = parent[STATE + k][from];
+      points.set(STATE + k, s, parent[STATE + k][from]);
     for (std::size_t k = 0; k < affine_fields; ++k)
-      points[points.affine + k][s] = parent[LXX + k][from];
+      points.set(points.affine + k, s, parent[LXX + k][from]);
   }
   fine.signals = coarse.signals;
   fine.must_sort = true;

@@ -41,8 +41,8 @@ hid_t type_of<std::int64_t>() {
   return H5T_NATIVE_INT64;
 }
 
-template <class T, class Allocator>
-void write(hid_t file, const std::string& name, const std::vector<T, Allocator>& values) {
+template <class T>
+void write(hid_t file, const std::string& name, const std::vector<T>& values) {
   const hsize_t n = values.size();
   const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a data space");
   const Handle set(
@@ -52,11 +52,11 @@ void write(hid_t file, const std::string& name, const std::vector<T, Allocator>&
     throw std::runtime_error(fmt::format("HDF5 could not write {}", name));
 }
 
-template <class T, class Allocator = std::allocator<T>>
-std::vector<T, Allocator> read(hid_t file, const std::string& name) {
+template <class T>
+std::vector<T> read(hid_t file, const std::string& name) {
   const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, ("find " + name).c_str());
   const Handle space(H5Dget_space(set), H5Sclose, "read a data space");
-  std::vector<T, Allocator> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
   if (!values.empty() &&
       H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
@@ -159,7 +159,7 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
     const PointsOf<dim>& points = s.bodies[b];
     write(file, fmt::format("body{}_id", b), points.id);
     for (std::size_t f = 0; f < points.fields; ++f)
-      write(file, fmt::format("body{}_field{}", b, f), points.field[f]);
+      write(file, fmt::format("body{}_field{}", b, f), points.values(f));
   }
   H5Fflush(file, H5F_SCOPE_GLOBAL);
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
@@ -196,9 +196,9 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
       PointsOf<dim>& points = s.bodies[b];
       points.id = read<std::int64_t>(file, fmt::format("body{}_id", b));
       for (std::size_t f = 0; f < points.fields; ++f) {
-        points.field[f] = read<double, AlignedVector<double>::allocator_type>(
-            file, fmt::format("body{}_field{}", b, f));
-        if (points.field[f].size() != points.id.size()) reject("its arrays differ in length");
+        const auto values = read<double>(file, fmt::format("body{}_field{}", b, f));
+        if (values.size() != points.id.size()) reject("its arrays differ in length");
+        points.assign(f, values);
       }
       points.count = 0;
       for (const std::int64_t id : points.id) points.count += id >= 0 ? 1 : 0;

@@ -155,8 +155,7 @@ Simulation::Counters Simulation::Impl<dim>::counters() const {
                      (sizeof(PointBlockOf<dim>) + sizeof(TileOf<dim>)) +
                  static_cast<double>(s.grid.node_blocks.size()) * sizeof(NodeBlockOf<dim>);
   for (const PointsOf<dim>& points : s.bodies)
-    bytes += static_cast<double>(points.slots() *
-                                 (points.fields * sizeof(double) + sizeof(std::int64_t)));
+    bytes += static_cast<double>(points.slots() * points.bytes_per_slot());
   std::size_t asleep = 0;
   for (const PointBlockOf<dim>& pb : s.grid.point_blocks)
     asleep += pb.rest.asleep ? pb.points() : 0;

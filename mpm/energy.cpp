@@ -4,6 +4,19 @@
 #include "mpm/step_kinematics.hpp"
 
 namespace repose::mpm {
+namespace {
+
+/// Calls f(first slot, points, range) for all points, some thousands at a time: those stored in
+/// single precision are copied for it.
+template <int dim, class F>
+void for_each_part(PointsOf<dim>& points, F&& f) {
+  constexpr std::size_t slots_of_part = 4096;
+  for (std::size_t first = 0; first < points.slots(); first += slots_of_part)
+    points.read({first, std::min(slots_of_part, points.slots() - first)},
+                [&](PointsOf<dim>& part, const Range& range) { f(first, part, range); });
+}
+
+}  // namespace
 
 template <int dim>
 typename Simulation::Impl<dim>::Energies Simulation::Impl<dim>::energies() {
@@ -12,7 +25,9 @@ typename Simulation::Impl<dim>::Energies Simulation::Impl<dim>::energies() {
   std::vector<double> stored;
   for (PointsOf<dim>& points : bodies) {
     stored.resize(padded(points.slots()));
-    points.material->stored_energy(points.batch({0, points.slots()}), stored.data());
+    for_each_part(points, [&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+      part.material->stored_energy(part.batch(range), stored.data() + first);
+    });
     for (std::size_t s = 0; s < points.slots(); ++s) {
       if (points.id[s] < 0) continue;
       const double m = points[F::mass][s];
@@ -73,7 +88,9 @@ void Simulation::Impl<dim>::remove_outflow() {
                                std::to_string(points.id[s]) + " has no finite position");
       if (stored.empty()) {
         stored.resize(padded(points.slots()));
-        points.material->stored_energy(points.batch({0, points.slots()}), stored.data());
+        for_each_part(points, [&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+          part.material->stored_energy(part.batch(range), stored.data() + first);
+        });
       }
       const double m = points[F::mass][s];
       const double elastic = stored[s] * m / points[F::rho][s];

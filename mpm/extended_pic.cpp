@@ -15,7 +15,7 @@ void through_points(const PointSet& points, const Range& range, double h, std::a
   const Pack one(1.0);
   for (std::size_t first = 0; first < range.count; first += Pack::size) {
     const auto at = [&](std::size_t f) {
-      return Pack::load_aligned(points[f] + range.begin + first);
+      return Pack::load_aligned(points.data(f) + range.begin + first);
     };
     const Pack x = at(X) * inv_h - x_0;
     const Pack y = at(Y) * inv_h - y_0;
@@ -82,12 +82,13 @@ void Simulation::Impl<2>::extend_velocity() {
       back[T_PX].fill(0.0);
       back[T_PY].fill(0.0);
       for (std::size_t b = 0; b < bodies.size(); ++b)
-        if (scene.kernel == mpm::Kernel::cubic)
-          mpm::through_points<CubicKernel>(bodies[b], pb.range[b], grid.h(), tile_origin(pb), there,
-                                           back);
-        else
-          mpm::through_points<QuadraticKernel>(bodies[b], pb.range[b], grid.h(), tile_origin(pb),
-                                               there, back);
+        bodies[b].read(pb.range[b], [&](const PointSet& points, const Range& range) {
+          if (scene.kernel == mpm::Kernel::cubic)
+            mpm::through_points<CubicKernel>(points, range, grid.h(), tile_origin(pb), there, back);
+          else
+            mpm::through_points<QuadraticKernel>(points, range, grid.h(), tile_origin(pb), there,
+                                                 back);
+        });
     });
     for_each_block(arena, n, [&](std::size_t k) {
       const NodeBlock& nb = grid.node_blocks[k];

@@ -140,6 +140,7 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   for (std::size_t k = 0; k < points.material->law().parameters.size(); ++k)
     if (points.material->law().parameters[k].name == "rho_0")
       points.rho_0 = points.material->theta()[k];
+  if (scene.storage == Storage::single_precision) points.store_single();
   return points;
 }
 

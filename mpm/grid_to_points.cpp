@@ -86,17 +86,18 @@ void Simulation::Impl<dim>::advance_block(std::size_t block, double dt, const Re
 
   static thread_local AlignedVector<double> scratch;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Range& range = pb.range[b];
-    if (range.count == 0) continue;
-    const std::size_t n = padded(range.count);
+    if (pb.range[b].count == 0) continue;
+    const std::size_t n = padded(pb.range[b].count);
     if (scratch.size() < scratch_arrays * n) scratch.resize(scratch_arrays * n);
     MotionOf<dim> motion;
     for (std::size_t i = 0; i < dim; ++i) motion.v[i] = scratch.data() + i * n;
     motion.elastic = scratch.data() + dim * n;
-    tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, keep, bodies[b],
-                                            motion);
-    move(bodies[b], range, motion, dt, sums);
-    strain(bodies[b], b, range, motion, dt, scratch.data() + (dim + 1) * n, sums);
+    bodies[b].update(pb.range[b], [&](PointsOf<dim>& points, const Range& range) {
+      tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, keep, points,
+                                              motion);
+      move(points, range, motion, dt, sums);
+      strain(points, b, range, motion, dt, scratch.data() + (dim + 1) * n, sums);
+    });
   }
 }
 
@@ -131,7 +132,7 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const Range& range,
     const std::size_t s = range.begin + k;
     auto near_wall = low < low;
     for (std::size_t i = 0; i < dim; ++i) {
-      double* const x = points[Layout<dim>::x + i] + s;
+      double* const x = points.data(Layout<dim>::x + i) + s;
       const Pack moved = Pack::load_aligned(x) + step * Pack::load_aligned(motion.v[i] + k);
       moved.store_aligned(x);
       near_wall = near_wall || moved < low || moved > Pack(end[i] - hair);
@@ -139,7 +140,7 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const Range& range,
     if (!any(near_wall)) continue;
     for (std::size_t lane = 0; lane < Pack::size; ++lane)
       for (std::size_t i = 0; i < dim; ++i)
-        keep(points[Layout<dim>::x + i][s + lane], end[i], walls.low(i), walls.high(i),
+        keep(points.data(Layout<dim>::x + i)[s + lane], end[i], walls.low(i), walls.high(i),
              k + lane < range.count);
   }
 }
@@ -170,7 +171,7 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     std::array<Pack, F::gradient> A;
     for (std::size_t i = 0; i < A.size(); ++i)
-      A[i] = step * Pack::load_aligned(points[F::L + i] + range.begin + k);
+      A[i] = step * Pack::load_aligned(points.data(F::L + i) + range.begin + k);
     const StepStrain<dim> of_step = step_strain(A, follows_rate);
     least_volume = min_of(least_volume, of_step.volume);
     for (std::size_t i = 0; i < e.size(); ++i) of_step.strain[i].store_aligned(e[i] + k);
@@ -211,9 +212,9 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   const double h = grid.h();
   const Pack per_cell(dim == 2 ? 0.2 / (h * h) : 0.09 / (h * h * h));
   for (std::size_t s = range.begin; s < range.begin + range.count; s += Pack::size) {
-    const Pack loosest = per_cell * Pack::load_aligned(points[F::mass] + s);
-    const Pack rho = Pack::load_aligned(points[F::rho] + s);
-    select(rho < loosest, loosest, rho).store_aligned(points[F::rho] + s);
+    const Pack loosest = per_cell * Pack::load_aligned(points.data(F::mass) + s);
+    const Pack rho = Pack::load_aligned(points.data(F::rho) + s);
+    select(rho < loosest, loosest, rho).store_aligned(points.data(F::rho) + s);
   }
   sum_up(points, range, batch, motion, sums);
 }
@@ -231,7 +232,9 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const Range& ran
   Pack kinetic(0.0), work(0.0), power(0.0);
   Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
-    const auto at = [&](std::size_t f) { return Pack::load_aligned(points[f] + range.begin + k); };
+    const auto at = [&](std::size_t f) {
+      return Pack::load_aligned(points.data(f) + range.begin + k);
+    };
     const Pack m = at(F::mass) * points_of_pack(k, range.count);
     const Pack inv_rho = one / at(F::rho);
     std::array<Pack, dim> v, moving;

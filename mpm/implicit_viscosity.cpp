@@ -17,7 +17,7 @@ constexpr int most_search_steps = 30;
 }  // namespace
 
 void split_stress(PointSet& points, const Range& range, const Batch& batch) {
-  double* const minus_p = points[points.force_stress[0]];
+  double* const minus_p = points.data(points.force_stress[0]);
   for (std::size_t k = 0; k < range.count; ++k) {
     const std::size_t s = range.begin + k;
     Sym<double, 4> stress, strain;

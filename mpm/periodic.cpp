@@ -73,7 +73,7 @@ double wrap_points(PointSet& points, double width, double gravity_x) {
     if (!std::isfinite(x))  // left by a failure; nothing to come back from
       throw NumericalFailure("point " + std::to_string(points.id[s]) + " has no finite position");
     const double inside = x - width * std::floor(x / width);
-    points[X][s] = inside < width ? inside : 0.0;  // −1e-17 + width is width
+    points.set(X, s, inside < width ? inside : 0.0);  // −1e-17 + width is width
     energy -= points[MASS][s] * gravity_x * (points[X][s] - x);
   }
   return energy;

@@ -1,5 +1,7 @@
 #include "mpm/points.hpp"
 
+#include <algorithm>
+
 namespace repose::mpm {
 
 template <int dim>
@@ -17,17 +19,127 @@ typename PointsOf<dim>::Batch PointsOf<dim>::batch(const Range& range) {
 template <int dim>
 void rearrange(PointsOf<dim>& points, const std::vector<std::uint32_t>& order,
                const std::vector<bool>& is_padding) {
-  AlignedVector<double> moved(order.size());
-  for (std::size_t f = 0; f < points.fields; ++f) {
-    const double* from = points[f];
-    for (std::size_t k = 0; k < order.size(); ++k) moved[k] = from[order[k]];
-    points.field[f].swap(moved);
+  const auto move = [&]<class Real>(AlignedVector<Real>& values, AlignedVector<Real>& moved) {
     moved.resize(order.size());
-  }
+    for (std::size_t k = 0; k < order.size(); ++k) moved[k] = values[order[k]];
+    values.swap(moved);
+  };
+  AlignedVector<double> wide;
+  AlignedVector<float> narrow;
+  for (std::size_t f = 0; f < points.fields; ++f)
+    points.single ? move(points.narrow[f], narrow) : move(points.field[f], wide);
+  if (points.single)
+    for (AlignedVector<float>& rest : points.rest) move(rest, narrow);
   std::vector<std::int64_t> names(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     names[k] = is_padding[k] ? -1 : points.id[order[k]];
   points.id.swap(names);
+}
+
+template <int dim>
+FieldView PointsOf<dim>::operator[](std::size_t f) const {
+  if (!single) return {field[f].data(), nullptr, nullptr};
+  const bool position = f < At::x + At::axes;  // the first fields
+  return {nullptr, narrow[f].data(), position ? rest[f - At::x].data() : nullptr};
+}
+
+template <int dim>
+void PointsOf<dim>::set(std::size_t f, std::size_t slot, double value) {
+  if (!single) {
+    field[f][slot] = value;
+    return;
+  }
+  narrow[f][slot] = static_cast<float>(value);
+  if (f < At::x + At::axes)
+    rest[f - At::x][slot] = static_cast<float>(value - double{narrow[f][slot]});
+}
+
+template <int dim>
+PointsOf<dim>& PointsOf<dim>::unpacked(const Range& range) const {
+  static thread_local PointsOf copy;
+  if (copy.material != material) copy.material = material;
+  copy.rho_0 = rho_0;
+  copy.count = range.count;
+  copy.fields = fields;
+  copy.affine = affine;
+  copy.force_stress = force_stress;
+  const std::size_t n = std::min(padded(range.count), slots() - range.begin);
+  if (copy.id.size() < padded(n)) {
+    copy.id.resize(padded(n));
+    for (AlignedVector<double>& values : copy.field) values.resize(padded(n));
+  }
+  std::copy_n(id.begin() + static_cast<std::ptrdiff_t>(range.begin), n, copy.id.begin());
+  for (std::size_t f = 0; f < fields; ++f)
+    std::copy_n(narrow[f].data() + range.begin, n, copy.data(f));
+  for (std::size_t axis = 0; axis < At::axes; ++axis) {
+    const float* const of = rest[axis].data() + range.begin;
+    double* const to = copy.data(At::x + axis);
+    for (std::size_t k = 0; k < n; ++k) to[k] += double{of[k]};
+  }
+  for (std::size_t f = 0; n > 0 && f < fields; ++f)  // behind the last point, where it is not whole
+    std::fill_n(copy.data(f) + n, padded(n) - n, copy.field[f][n - 1]);
+  return copy;
+}
+
+template <int dim>
+void PointsOf<dim>::pack(const PointsOf& copy, const Range& range) {
+  const std::size_t n = padded(range.count);
+  for (std::size_t f = 0; f < fields; ++f) {
+    const double* const from = copy.data(f);
+    float* const to = narrow[f].data() + range.begin;
+    for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<float>(from[k]);
+  }
+  for (std::size_t axis = 0; axis < At::axes; ++axis) {
+    const double* const from = copy.data(At::x + axis);
+    const float* const rounded = narrow[At::x + axis].data() + range.begin;
+    float* const to = rest[axis].data() + range.begin;
+    for (std::size_t k = 0; k < n; ++k) to[k] = static_cast<float>(from[k] - double{rounded[k]});
+  }
+}
+
+template <int dim>
+std::vector<double> PointsOf<dim>::values(std::size_t f) const {
+  std::vector<double> all(slots());
+  for (std::size_t s = 0; s < all.size(); ++s) all[s] = (*this)[f][s];
+  return all;
+}
+
+template <int dim>
+void PointsOf<dim>::assign(std::size_t f, const std::vector<double>& values) {
+  if (!single) {
+    field[f].assign(values.begin(), values.end());
+    return;
+  }
+  narrow[f].resize(values.size());
+  if (f < At::x + At::axes) rest[f - At::x].resize(values.size());
+  for (std::size_t s = 0; s < values.size(); ++s) set(f, s, values[s]);
+}
+
+template <int dim>
+PointsOf<dim> PointsOf<dim>::widened() const {
+  if (!single) return *this;
+  PointsOf wide;
+  wide.material = material;
+  wide.rho_0 = rho_0;
+  wide.count = count;
+  wide.fields = fields;
+  wide.affine = affine;
+  wide.force_stress = force_stress;
+  wide.id = id;
+  for (std::size_t f = 0; f < fields; ++f) wide.assign(f, values(f));
+  return wide;
+}
+
+template <int dim>
+void PointsOf<dim>::store_single() {
+  for (std::size_t f = 0; f < fields; ++f) {
+    const std::vector<double> wide = values(f);
+    field[f] = {};
+    single = true;
+    assign(f, wide);
+    single = false;
+  }
+  single = true;
 }
 
 template struct PointsOf<2>;

@@ -56,6 +56,24 @@ static_assert(Layout<2>::v == VX && Layout<2>::L == LXX && Layout<2>::stress == 
               Layout<2>::rho == RHO && Layout<2>::mass == MASS && Layout<2>::state == STATE &&
               Layout<2>::gradient == affine_fields);
 
+/// One field of all points, read as doubles however it is stored.
+class FieldView {
+ public:
+  FieldView(const double* wide, const float* narrow, const float* rest)
+      : wide_(wide),
+        narrow_(narrow),
+        rest_(rest) {}
+  double operator[](std::size_t slot) const {
+    if (wide_ != nullptr) return wide_[slot];
+    return rest_ == nullptr ? double{narrow_[slot]} : double{narrow_[slot]} + double{rest_[slot]};
+  }
+
+ private:
+  const double* wide_;
+  const float* narrow_;
+  const float* rest_;
+};
+
 /// A contiguous run of slots: the points of one body in one block. `begin` is a multiple of the
 /// pack size; the slots between count and padded(count) hold copies of the last point, valid but
 /// never transferred.
@@ -64,10 +82,14 @@ struct Range {
   std::size_t count = 0;
 };
 
+/// Points in double precision; or, `single`, in single precision between the steps that work on
+/// them: then every field is rounded to 24 bits when a block is done but the position,
+/// which is the sum of two floats (48 bits), or small steps would not move a point at all.
 template <int dim>
 struct PointsOf {
   using At = Layout<dim>;
   using Batch = BatchOf<static_cast<int>(At::components)>;
+  static constexpr std::size_t most_fields = At::state + max_state + split_fields + At::gradient;
 
   std::shared_ptr<const Material> material;
   double rho_0 = 0.0;     ///< reference density for solid depths [kg/m³]
@@ -81,21 +103,58 @@ struct PointsOf {
   /// yz, zx in space: the whole stress; or in the plane two fields behind the state, −p and 0,
   /// where the viscous part acts implicitly (implicit_viscosity.hpp).
   std::array<std::size_t, dim == 2 ? 3 : 6> force_stress = whole_stress();
-  std::array<AlignedVector<double>, At::state + max_state + split_fields + At::gradient> field;
+  std::array<AlignedVector<double>, most_fields> field;  ///< empty if `single`
   std::vector<std::int64_t> id;  ///< order of creation, the point's name for life; −1 in padding
 
-  double* operator[](std::size_t f) { return field[f].data(); }
-  const double* operator[](std::size_t f) const { return field[f].data(); }
+  bool single = false;
+  std::array<AlignedVector<float>, most_fields> narrow;  ///< the fields, if `single`
+  std::array<AlignedVector<float>, dim> rest;            ///< what `narrow` leaves of the position
+
+  FieldView operator[](std::size_t f) const;
+  void set(std::size_t f, std::size_t slot, double value);
+  /// Of points in double precision, which the stages of a step work on.
+  double* data(std::size_t f) { return field[f].data(); }
+  const double* data(std::size_t f) const { return field[f].data(); }
   std::size_t slots() const { return id.size(); }
   bool splits_stress() const { return force_stress[0] != At::stress; }
   std::size_t state_fields() const {
     return (splits_stress() ? force_stress[0] : affine == At::L ? fields : affine) - At::state;
   }
+  std::size_t bytes_per_slot() const {
+    return fields * (single ? sizeof(float) : sizeof(double)) + (single ? dim : 0) * sizeof(float) +
+           sizeof(std::int64_t);
+  }
 
-  /// Views of the points of a range, for the law; strain and outputs are left to the caller.
+  /// Views of the points of a range, for the law; strain and outputs are left to the caller. Of
+  /// points in double precision.
   Batch batch(const Range& range);
 
+  /// Calls f(points, range) with a range of points in double precision: these, or a copy whose
+  /// changes are lost (read) or rounded and kept (update).
+  template <class F>
+  void read(const Range& range, F&& f) {
+    if (!single) return f(*this, range);
+    f(unpacked(range), Range{0, range.count});
+  }
+  template <class F>
+  void update(const Range& range, F&& f) {
+    if (!single) return f(*this, range);
+    PointsOf& copy = unpacked(range);
+    f(copy, Range{0, range.count});
+    pack(copy, range);
+  }
+
+  /// A field, and a field from its values, one per slot.
+  std::vector<double> values(std::size_t f) const;
+  void assign(std::size_t f, const std::vector<double>& values);
+  /// All points in double precision.
+  PointsOf widened() const;
+  /// From double to single precision, once they are filled.
+  void store_single();
+
  private:
+  PointsOf& unpacked(const Range& range) const;  ///< one copy per thread
+  void pack(const PointsOf& copy, const Range& range);
   static constexpr std::array<std::size_t, dim == 2 ? 3 : 6> whole_stress() {
     constexpr std::size_t s = At::stress;
     if constexpr (dim == 2)

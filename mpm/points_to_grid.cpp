@@ -17,17 +17,19 @@ void Simulation::Impl<dim>::transfer_to_tile(std::size_t block) {
   for (std::size_t c = 0; c < Channels<dim>::extra + has_extra; ++c) tile[c].fill(0.0);
   static thread_local AlignedVector<double> values;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const Range& range = pb.range[b];
-    if constexpr (has_extra) values.resize(std::max(values.size(), padded(range.count)));
-    if constexpr (extra == Extra::elastic)
-      bodies[b].material->elastic_volume_strain(bodies[b].batch(range), values.data());
-    if constexpr (extra == Extra::signal) square_signals(bodies[b], range, values.data());
-    points_to_tile<Kernel, affine, has_extra>(bodies[b], range, grid.h(), tile_origin(pb),
-                                              values.data(), tile);
-    if constexpr (dim == 2) {
-      if (prescribed.acceleration)
-        prescribed_force_to_tile<Kernel>(bodies[b], range, tile_origin(pb), tile);
-    }
+    if (pb.range[b].count == 0) continue;
+    bodies[b].read(pb.range[b], [&](PointsOf<dim>& points, const Range& range) {
+      if constexpr (has_extra) values.resize(std::max(values.size(), padded(range.count)));
+      if constexpr (extra == Extra::elastic)
+        points.material->elastic_volume_strain(points.batch(range), values.data());
+      if constexpr (extra == Extra::signal) square_signals(points, range, values.data());
+      points_to_tile<Kernel, affine, has_extra>(points, range, grid.h(), tile_origin(pb),
+                                                values.data(), tile);
+      if constexpr (dim == 2) {
+        if (prescribed.acceleration)
+          prescribed_force_to_tile<Kernel>(points, range, tile_origin(pb), tile);
+      }
+    });
   }
 }
 
@@ -37,7 +39,9 @@ void Simulation::Impl<dim>::square_signals(PointsOf<dim>& points, const Range& r
   using F = Layout<dim>;
   points.material->modulus(points.batch(range), signal2);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
-    const auto at = [&](std::size_t f) { return Pack::load_aligned(points[f] + range.begin + k); };
+    const auto at = [&](std::size_t f) {
+      return Pack::load_aligned(points.data(f) + range.begin + k);
+    };
     const Pack c = sqrt(Pack::load_aligned(signal2 + k) / at(F::rho));
     std::array<Pack, dim> v;
     for (std::size_t i = 0; i < dim; ++i) v[i] = at(F::v + i);
@@ -50,7 +54,6 @@ template <>
 template <class Kernel>
 void Simulation::Impl<2>::prescribed_force_to_tile(const PointSet& points, const Range& range,
                                                    std::array<int, 2> origin, Tile& tile) const {
-  if (range.count == 0) return;
   const std::size_t n = range.count;
   static thread_local std::vector<double> scratch;
   scratch.assign(4 * n, 0.0);

@@ -83,6 +83,14 @@ enum class Viscosity {
 /// Their names in scene files, in the same order.
 constexpr std::array<std::string_view, 2> viscosity_names{"explicit", "implicit"};
 
+/// How the points lie in memory between steps; the arithmetic is in double precision either way.
+enum class Storage {
+  double_precision,
+  single_precision,  ///< 24 bits of every field, 48 of the position (points.hpp)
+};
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 2> storage_names{"double", "float"};
+
 /// Where a step has a chance to be stable: the bulk is, in two directions, up to 1.93/√2 = 1.36
 /// (cubic).
 inline constexpr repose::Range courant_range{0.0, 1.4, true, false};
@@ -126,6 +134,8 @@ struct Scene {
   /// Points slower than this for √(h/g) are at rest, and blocks of them sleep (sleep.hpp) [m/s]; 0:
   /// none does.
   double sleep_speed = 0.0;
+
+  Storage storage = Storage::double_precision;
 
   double courant = 0.8;      ///< Δt = courant · h/(c + |v|), if dt is absent; see step_size.hpp
   std::optional<double> dt;  ///< fixed step [s]

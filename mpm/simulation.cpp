@@ -22,10 +22,10 @@ std::array<double, dim> gravity_vector(const Scene& scene) {
 void set_motion(PointSet& points, const std::function<PointMotion(double, double)>& motion) {
   for (std::size_t s = 0; s < points.slots(); ++s) {
     const PointMotion at = motion(points[X][s], points[Y][s]);
-    points[VX][s] = at.velocity[0];
-    points[VY][s] = at.velocity[1];
+    points.set(VX, s, at.velocity[0]);
+    points.set(VY, s, at.velocity[1]);
     for (std::size_t k = 0; k < affine_fields; ++k)
-      points[LXX + k][s] = points[points.affine + k][s] = at.gradient[k];
+      for (const std::size_t f : {LXX + k, points.affine + k}) points.set(f, s, at.gradient[k]);
   }
 }
 
@@ -67,8 +67,10 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     for (PointSet& points : bodies) {
       if (prescribed.start) set_motion(points, prescribed.start);
       if (!prescribed.acceleration) continue;
-      start_x.insert(start_x.end(), points.field[X].begin(), points.field[X].end());
-      start_y.insert(start_y.end(), points.field[Y].begin(), points.field[Y].end());
+      for (std::size_t s = 0; s < points.slots(); ++s) {
+        start_x.push_back(points[X][s]);
+        start_y.push_back(points[Y][s]);
+      }
     }
   } else if (prescribed.start || prescribed.acceleration) {
     throw InputError("domain.size", "a prescribed motion is for plane strain only");
@@ -105,8 +107,8 @@ Signals Simulation::Impl<dim>::initial_signals() const {
   Signals found;
   std::vector<double> modulus;
   for (const PointsOf<dim>& points : bodies) {
-    PointsOf<dim> copy =
-        points;  // the viscosity at rest comes with an update, which must not count
+    // the viscosity at rest comes with an update, which must not count
+    PointsOf<dim> copy = points.widened();
     const Range all{0, copy.slots()};
     std::vector<double> zero(padded(copy.slots()), 0.0);
     std::vector<double> viscosity(zero.size(), 0.0);

@@ -110,7 +110,8 @@ void Simulation::Impl<dim>::put_to_sleep(std::size_t block) {
     PointsOf<dim>& points = bodies[b];
     const Range& range = pb.range[b];
     const auto stop = [&](std::size_t f) {
-      std::fill_n(points[f] + range.begin, padded(range.count), 0.0);
+      for (std::size_t s = range.begin; s < range.begin + padded(range.count); ++s)
+        points.set(f, s, 0.0);
     };
     using F = Layout<dim>;
     for (std::size_t i = 0; i < dim; ++i) stop(F::v + i);

@@ -173,7 +173,7 @@ void points_to_tile(const PointsOf<dim>& points, const Range& range, double h,
     std::size_t current = nowhere;
     for (std::size_t first = 0; first < range.count; first += Pack::size) {
       const auto at = [&](std::size_t f) {
-        return Pack::load_aligned(points[f] + range.begin + first);
+        return Pack::load_aligned(points.data(f) + range.begin + first);
       };
       alignas(64) double c[C::count][Pack::size];
       alignas(64) double tx[Pack::size], ty[Pack::size], place[Pack::size];
@@ -252,8 +252,8 @@ void tile_to_points(const VelocityTileOf<dim>& tile,
   const std::size_t a = points.affine;
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const std::size_t s = range.begin + k;
-    const auto at = [&](std::size_t f) { return Pack::load_aligned(points[f] + s); };
-    const auto put = [&](std::size_t f, const Pack& x) { x.store_aligned(points[f] + s); };
+    const auto at = [&](std::size_t f) { return Pack::load_aligned(points.data(f) + s); };
+    const auto put = [&](std::size_t f, const Pack& x) { x.store_aligned(points.data(f) + s); };
     /// Coordinate in units of h from the tile's first node.
     const auto from_tile = [&](std::size_t axis) {
       return Pack(at(F::x + axis) * inv_h - Pack(static_cast<double>(origin[axis])));

@@ -38,12 +38,24 @@ Scene everything(Kernel kernel) {
   return scene;
 }
 
-class DeterminismTest : public ::testing::TestWithParam<Kernel> {};
+struct Method {
+  Kernel kernel;
+  Storage storage;
+};
+
+class DeterminismTest : public ::testing::TestWithParam<Method> {
+ protected:
+  static Scene scene_of_all() {
+    Scene scene = everything(GetParam().kernel);
+    scene.storage = GetParam().storage;
+    return scene;
+  }
+};
 
 TEST_P(DeterminismTest, AnyNumberOfThreads) {
   // four real threads, also where there are fewer cores
   const tbb::global_control four(tbb::global_control::max_allowed_parallelism, 4);
-  const Scene scene = everything(GetParam());
+  const Scene scene = scene_of_all();
   const auto run = [&](int threads) {
     Simulation simulation(scene, threads);
     run_steps(simulation, 400);
@@ -59,7 +71,7 @@ TEST_P(DeterminismTest, AnyNumberOfThreads) {
 }
 
 TEST_P(DeterminismTest, StoppedAndResumed) {
-  const Scene scene = everything(GetParam());
+  const Scene scene = scene_of_all();
   const int steps = 240;
   std::vector<SavedState> middle;
   const ScratchFile file;
@@ -83,11 +95,15 @@ TEST_P(DeterminismTest, StoppedAndResumed) {
   for (const auto& one : resumed) EXPECT_EQ(saved_state(*one), end);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, DeterminismTest,
-                         ::testing::Values(Kernel::cubic, Kernel::quadratic),
-                         [](const auto& kernel) {
-                           return kernel.param == Kernel::cubic ? "cubic" : "quadratic";
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Kernels, DeterminismTest,
+    ::testing::Values(Method{Kernel::cubic, Storage::double_precision},
+                      Method{Kernel::quadratic, Storage::double_precision},
+                      Method{Kernel::cubic, Storage::single_precision}),
+    [](const auto& method) {
+      return std::string(name_of(method.param.kernel)) + "_" +
+             std::string(storage_names[static_cast<std::size_t>(method.param.storage)]);
+    });
 
 // Outputs at other times change the steps, but a series of stops is the same series anywhere.
 TEST(StopsTest, AreMetExactlyAndTheSameAfterResuming) {

@@ -230,8 +230,8 @@ TYPED_TEST(SpaceTransferTest, ALinearFieldGoesToTheGridAndBackExactly) {
   PointsOf<3> points = points_near_block(0.999);
   for (std::size_t s = 0; s < points.count; ++s)
     for (std::size_t i = 0; i < 3; ++i) {
-      points[F::v + i][s] = field(i, vector_at(points, F::x, s));
-      for (std::size_t j = 0; j < 3; ++j) points[F::L + 3 * i + j][s] = B[i][j];
+      points.set(F::v + i, s, field(i, vector_at(points, F::x, s)));
+      for (std::size_t j = 0; j < 3; ++j) points.set(F::L + 3 * i + j, s, B[i][j]);
     }
   const auto tile = this->scattered(points);
   const auto velocity = std::make_unique<VelocityTileOf<3>>();

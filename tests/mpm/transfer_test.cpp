@@ -154,11 +154,11 @@ TYPED_TEST(TransferTest, ALinearFieldGoesToTheGridAndBackExactly) {
   PointSet points = this->points_near_block(0.999);
   for (std::size_t s = 0; s < points.count; ++s) {
     for (std::size_t i = 0; i < 2; ++i)
-      points[VX + i][s] = a[i] + B[i][0] * points[X][s] + B[i][1] * points[Y][s];
-    points[LXX][s] = B[0][0];
-    points[LXY][s] = B[0][1];
-    points[LYX][s] = B[1][0];
-    points[LYY][s] = B[1][1];
+      points.set(VX + i, s, a[i] + B[i][0] * points[X][s] + B[i][1] * points[Y][s]);
+    points.set(LXX, s, B[0][0]);
+    points.set(LXY, s, B[0][1]);
+    points.set(LYX, s, B[1][0]);
+    points.set(LYY, s, B[1][1]);
   }
   const Tile tile = this->scattered(points);
   VelocityTile velocity;
