@@ -144,6 +144,15 @@ struct Scene {
   double series_interval = 0.0;  ///< [s]; 0: first and last row only
 };
 
+/// How far lengths may be from whole cells and spacings, in these.
+inline constexpr double lattice_tolerance = 1e-6;
+
+/// Whether x is n times a unit for a whole n >= 1, to lattice_tolerance of the unit.
+bool is_whole_multiple(double x, double unit);
+
+/// Points along the edge of a cell: √points_per_cell, in space ∛points_per_cell.
+int points_per_edge(const Scene& scene);
+
 /// Distance between neighbouring points of a body at the start [m]: h/√points_per_cell, in space
 /// h/∛points_per_cell.
 double point_spacing(const Scene& scene);

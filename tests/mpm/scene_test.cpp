@@ -136,6 +136,16 @@ TEST(Scene, laws_and_initial_states_are_tried) {
   EXPECT_EQ(complaint(scene).substr(0, 18), "body[0].law.Gamma:");
 }
 
+TEST(Scene, relaxed_needs_a_time_without_gravity) {
+  Scene scene = sound();
+  scene.gravity = 0.0;
+  scene.transfer = Transfer::relaxed;
+  EXPECT_EQ(complaint(scene),
+            "step.transfer: without gravity, \"relaxed\" needs step.relaxation_time [s]");
+  scene.relaxation_time = 1e-3;
+  EXPECT_EQ(complaint(scene), "");
+}
+
 TEST(Scene, a_lithostatic_state_follows_from_the_weight) {
   Scene scene = clay();
   scene.bodies[0].initial = {};

@@ -26,8 +26,8 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
     points_ = random_points(4 * nx * ny, {0.0, 0.0}, {1.0, 1.0}, 21);
     for (std::size_t s = 0; s < points_.count; ++s) {
       const auto cell = static_cast<int>(s / 4);
-      points_[X][s] = (cell % nx + points_[X][s]) * h;
-      points_[Y][s] = (cell / nx + points_[Y][s]) * h;
+      points_.set(X, s, (cell % nx + points_[X][s]) * h);
+      points_.set(Y, s, (cell / nx + points_[Y][s]) * h);
       set_motion(s, v);
     }
     std::vector<PointSet> bodies{points_};
@@ -96,9 +96,9 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
     const double x = points_[X][s], y = points_[Y][s];
     const auto at = v(x, y), right = v(x + 1.0, y), above = v(x, y + 1.0);  // linear: exact
     for (std::size_t i = 0; i < 2; ++i) {
-      points_[VX + i][s] = at[i];
-      points_[LXX + 2 * i][s] = right[i] - at[i];
-      points_[LXY + 2 * i][s] = above[i] - at[i];
+      points_.set(VX + i, s, at[i]);
+      points_.set(LXX + 2 * i, s, right[i] - at[i]);
+      points_.set(LXY + 2 * i, s, above[i] - at[i]);
     }
   }
 };
