@@ -4,19 +4,6 @@
 #include "mpm/step_kinematics.hpp"
 
 namespace repose::mpm {
-namespace {
-
-/// Calls f(first slot, points, range) for all points, some thousands at a time: those stored in
-/// single precision are copied for it.
-template <int dim, class F>
-void for_each_part(PointsOf<dim>& points, F&& f) {
-  constexpr std::size_t slots_of_part = 4096;
-  for (std::size_t first = 0; first < points.slots(); first += slots_of_part)
-    points.read({first, std::min(slots_of_part, points.slots() - first)},
-                [&](PointsOf<dim>& part, const Range& range) { f(first, part, range); });
-}
-
-}  // namespace
 
 template <int dim>
 typename Simulation::Impl<dim>::Energies Simulation::Impl<dim>::energies() {
@@ -25,7 +12,7 @@ typename Simulation::Impl<dim>::Energies Simulation::Impl<dim>::energies() {
   std::vector<double> stored;
   for (PointsOf<dim>& points : bodies) {
     stored.resize(padded(points.slots()));
-    for_each_part(points, [&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const Range& range) {
       part.material->stored_energy(part.batch(range), stored.data() + first);
     });
     for (std::size_t s = 0; s < points.slots(); ++s) {
@@ -88,7 +75,7 @@ void Simulation::Impl<dim>::remove_outflow() {
                                std::to_string(points.id[s]) + " has no finite position");
       if (stored.empty()) {
         stored.resize(padded(points.slots()));
-        for_each_part(points, [&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+        points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const Range& range) {
           part.material->stored_energy(part.batch(range), stored.data() + first);
         });
       }

@@ -25,26 +25,24 @@ void append(PointsOf<dim>& points, const std::array<double, dim>& x, const Body&
   const double cy = body.origin[1] + 0.5 * body.size[1];
   const std::array<double, 3> turning{-body.spin * (x[1] - cy), body.spin * (x[0] - cx), 0.0};
   for (std::size_t i = 0; i < dim; ++i) {
-    points.field[F::x + i].push_back(x[i]);
-    points.field[F::v + i].push_back(body.velocity[i] + turning[i]);
+    points.append(F::x + i, x[i]);
+    points.append(F::v + i, body.velocity[i] + turning[i]);
     for (std::size_t j = 0; j < dim; ++j)
-      points.field[F::L + dim * i + j].push_back(i == 0 && j == 1   ? -body.spin
-                                                 : i == 1 && j == 0 ? body.spin
-                                                                    : 0.0);
+      points.append(F::L + dim * i + j, i == 0 && j == 1   ? -body.spin
+                                        : i == 1 && j == 0 ? body.spin
+                                                           : 0.0);
   }
-  for (std::size_t k = 0; k < F::components; ++k)
-    points.field[F::stress + k].push_back(at.stress.c[k]);
-  points.field[F::rho].push_back(at.density);
-  points.field[F::mass].push_back(at.density * volume);
-  for (std::size_t k = 0; k < at.state.size(); ++k)
-    points.field[F::state + k].push_back(at.state[k]);
+  for (std::size_t k = 0; k < F::components; ++k) points.append(F::stress + k, at.stress.c[k]);
+  points.append(F::rho, at.density);
+  points.append(F::mass, at.density * volume);
+  for (std::size_t k = 0; k < at.state.size(); ++k) points.append(F::state + k, at.state[k]);
   if (points.splits_stress()) {
-    points.field[points.force_stress[0]].push_back(mean(at.stress));
-    points.field[points.force_stress[2]].push_back(0.0);
+    points.append(points.force_stress[0], mean(at.stress));
+    points.append(points.force_stress[2], 0.0);
   }
   if (points.affine != F::L)
     for (std::size_t k = 0; k < F::gradient; ++k)
-      points.field[points.affine + k].push_back(points.field[F::L + k].back());
+      points.append(points.affine + k, points[F::L + k][points.id.size()]);
   points.id.push_back(id);
   ++points.count;
 }
@@ -93,7 +91,10 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
     points.fields += F::gradient;
   }
 
+  points.single = scene.storage == Storage::single_precision;
+
   const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
+  points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
   std::array<double, dim> spacing;
   double volume = 1.0;
   for (std::size_t i = 0; i < dim; ++i) {
@@ -136,11 +137,10 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
       }
   }
   // solid depths are measured at the loosest density the law knows by name, else as filled
-  points.rho_0 = points.field[F::rho].empty() ? 0.0 : points.field[F::rho].back();
+  points.rho_0 = points.count == 0 ? 0.0 : points[F::rho][points.count - 1];
   for (std::size_t k = 0; k < points.material->law().parameters.size(); ++k)
     if (points.material->law().parameters[k].name == "rho_0")
       points.rho_0 = points.material->theta()[k];
-  if (scene.storage == Storage::single_precision) points.store_single();
   return points;
 }
 

@@ -70,8 +70,9 @@ PointsOf<dim>& PointsOf<dim>::unpacked(const Range& range) const {
   }
   std::copy_n(id.begin() + static_cast<std::ptrdiff_t>(range.begin), n, copy.id.begin());
   for (std::size_t f = 0; f < fields; ++f)
-    std::copy_n(narrow[f].data() + range.begin, n, copy.data(f));
-  for (std::size_t axis = 0; axis < At::axes; ++axis) {
+    single ? std::copy_n(narrow[f].data() + range.begin, n, copy.data(f))
+           : std::copy_n(data(f) + range.begin, n, copy.data(f));
+  for (std::size_t axis = 0; single && axis < At::axes; ++axis) {
     const float* const of = rest[axis].data() + range.begin;
     double* const to = copy.data(At::x + axis);
     for (std::size_t k = 0; k < n; ++k) to[k] += double{of[k]};
@@ -116,30 +117,22 @@ void PointsOf<dim>::assign(std::size_t f, const std::vector<double>& values) {
 }
 
 template <int dim>
-PointsOf<dim> PointsOf<dim>::widened() const {
-  if (!single) return *this;
-  PointsOf wide;
-  wide.material = material;
-  wide.rho_0 = rho_0;
-  wide.count = count;
-  wide.fields = fields;
-  wide.affine = affine;
-  wide.force_stress = force_stress;
-  wide.id = id;
-  for (std::size_t f = 0; f < fields; ++f) wide.assign(f, values(f));
-  return wide;
+void PointsOf<dim>::reserve(std::size_t n) {
+  id.reserve(n);
+  for (std::size_t f = 0; f < fields; ++f) single ? narrow[f].reserve(n) : field[f].reserve(n);
+  if (single)
+    for (AlignedVector<float>& values : rest) values.reserve(n);
 }
 
 template <int dim>
-void PointsOf<dim>::store_single() {
-  for (std::size_t f = 0; f < fields; ++f) {
-    const std::vector<double> wide = values(f);
-    field[f] = {};
-    single = true;
-    assign(f, wide);
-    single = false;
+void PointsOf<dim>::append(std::size_t f, double value) {
+  if (!single) {
+    field[f].push_back(value);
+    return;
   }
-  single = true;
+  narrow[f].push_back(0.0F);
+  if (f < At::x + At::axes) rest[f - At::x].push_back(0.0F);
+  set(f, narrow[f].size() - 1, value);
 }
 
 template struct PointsOf<2>;

@@ -2,6 +2,7 @@
 /// \file
 /// The material points of one body, as a structure of arrays sorted by grid block.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -144,13 +145,23 @@ struct PointsOf {
     pack(copy, range);
   }
 
+  /// Calls f(first slot, points, range) with copies of all slots in double precision, some
+  /// thousands at a time; what f changes is lost.
+  template <class F>
+  void copy_in_parts(F&& f) const {
+    constexpr std::size_t slots_of_part = 4096;
+    for (std::size_t first = 0; first < slots(); first += slots_of_part) {
+      const Range range{first, std::min(slots_of_part, slots() - first)};
+      f(first, unpacked(range), Range{0, range.count});
+    }
+  }
+
   /// A field, and a field from its values, one per slot.
   std::vector<double> values(std::size_t f) const;
   void assign(std::size_t f, const std::vector<double>& values);
-  /// All points in double precision.
-  PointsOf widened() const;
-  /// From double to single precision, once they are filled.
-  void store_single();
+  /// Room for n points, and the value of a field of the next one.
+  void reserve(std::size_t n);
+  void append(std::size_t f, double value);
 
  private:
   PointsOf& unpacked(const Range& range) const;  ///< one copy per thread

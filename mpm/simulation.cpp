@@ -105,29 +105,31 @@ template <int dim>
 Signals Simulation::Impl<dim>::initial_signals() const {
   using F = Layout<dim>;
   Signals found;
-  std::vector<double> modulus;
+  std::vector<double> modulus, viscosity, zero;
   for (const PointsOf<dim>& points : bodies) {
     // the viscosity at rest comes with an update, which must not count
-    PointsOf<dim> copy = points.widened();
-    const Range all{0, copy.slots()};
-    std::vector<double> zero(padded(copy.slots()), 0.0);
-    std::vector<double> viscosity(zero.size(), 0.0);
-    modulus.resize(zero.size());
-    typename PointsOf<dim>::Batch batch = copy.batch(all);
-    copy.material->modulus(batch, modulus.data());
-    if (!copy.material->law().has_stress_memory && !copy.splits_stress()) {
-      batch.dt = 1.0;
-      batch.strain.fill(zero.data());
-      batch.viscosity = viscosity.data();
-      copy.material->update(batch);
-    }
-    for (std::size_t s = 0; s < points.slots(); ++s) {
-      if (points.id[s] < 0) continue;
-      const double speed = std::sqrt(squared_speed(points, s));
-      const double rho = points[F::rho][s];
-      found.include({speed, speed + std::sqrt(modulus[s] / rho),
-                     2.0 * dim * viscosity[s] / (rho * grid.h() * grid.h())});
-    }
+    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+      const std::size_t n = padded(range.count);
+      modulus.resize(n);
+      zero.assign(n, 0.0);
+      viscosity.assign(n, 0.0);
+      typename PointsOf<dim>::Batch batch = part.batch(range);
+      part.material->modulus(batch, modulus.data());
+      if (!part.material->law().has_stress_memory && !part.splits_stress()) {
+        batch.dt = 1.0;
+        batch.strain.fill(zero.data());
+        batch.viscosity = viscosity.data();
+        part.material->update(batch);
+      }
+      for (std::size_t k = 0; k < range.count; ++k) {
+        const std::size_t s = first + k;
+        if (points.id[s] < 0) continue;
+        const double speed = std::sqrt(squared_speed(points, s));
+        const double rho = points[F::rho][s];
+        found.include({speed, speed + std::sqrt(modulus[k] / rho),
+                       2.0 * dim * viscosity[k] / (rho * grid.h() * grid.h())});
+      }
+    });
   }
   return found;
 }

@@ -8,12 +8,20 @@
 namespace repose::mpm {
 namespace {
 
+PointSet in_single(const PointSet& wide) {
+  PointSet narrow = no_points();
+  narrow.single = true;
+  narrow.id = wide.id;
+  narrow.count = wide.count;
+  for (std::size_t f = 0; f < wide.fields; ++f) narrow.assign(f, wide.values(f));
+  return narrow;
+}
+
 constexpr double half_ulp = 0x1p-24;  // of a float, relative
 
 TEST(Storage, RoundsFieldsToAFloatAndPositionsToTwo) {
   const PointSet wide = random_points(100, {0.0, 0.0}, {1.0, 1.0}, 7);
-  PointSet narrow = wide;
-  narrow.store_single();
+  const PointSet narrow = in_single(wide);
   bool any_rounded = false;
   for (std::size_t s = 0; s < wide.slots(); ++s)
     for (std::size_t f = 0; f < wide.fields; ++f) {
@@ -25,16 +33,13 @@ TEST(Storage, RoundsFieldsToAFloatAndPositionsToTwo) {
     }
   EXPECT_TRUE(any_rounded);
   // there and back again changes nothing more
-  PointSet again = narrow.widened();
-  EXPECT_FALSE(again.single);
-  again.store_single();
+  const PointSet again = in_single(narrow);
   for (std::size_t s = 0; s < wide.slots(); ++s)
     for (std::size_t f = 0; f < wide.fields; ++f) EXPECT_EQ(again[f][s], narrow[f][s]);
 }
 
 TEST(Storage, ReadLeavesThePointsAndUpdateRoundsThem) {
-  PointSet points = random_points(64, {0.0, 0.0}, {1.0, 1.0}, 3);
-  points.store_single();
+  PointSet points = in_single(random_points(64, {0.0, 0.0}, {1.0, 1.0}, 3));
   const Range middle{Pack::size, 7};
   const double before = points[VX][middle.begin];
   const auto triple = [](PointSet& part, const Range& range) {
