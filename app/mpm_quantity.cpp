@@ -55,7 +55,9 @@ VectorXd shares_of(const SweepRun& run, Quantity q, double bin) {
                   volume.left_of(static_cast<double>(i) * bin);
     return shares;
   }
-  const std::vector<double>& rows = run.series.find(column_of(q))->second;
+  const auto column = run.series.find(column_of(q));
+  if (column == run.series.end()) return VectorXd::Constant(1, std::nan(""));
+  const std::vector<double>& rows = column->second;
   return run.scene().series_interval *
          Eigen::Map<const VectorXd>(rows.data(), static_cast<Index>(rows.size()));
 }

@@ -67,18 +67,23 @@ std::vector<VariedKey> read_varied(TomlReader& chart) {
 }  // namespace
 
 std::string value_text(const toml::node& value) {
-  std::ostringstream out;
-  const auto flags = toml::format_flags::none;
+  std::vector<std::string> items;
   if (const toml::table* table = value.as_table()) {
-    toml::table one = *table;
-    one.is_inline(true);
-    out << toml::toml_formatter{one, flags};
-  } else {
-    out << toml::toml_formatter{value, flags};
+    for (const auto& [key, node] : *table)
+      items.push_back(fmt::format("\"{}\" = {}", key.str(), value_text(node)));
+    return fmt::format("{{ {} }}", fmt::join(items, ", "));
   }
-  std::string text = std::move(out).str();
-  std::replace(text.begin(), text.end(), '\n', ' ');  // long lists take several lines
-  return text;
+  if (const toml::array* list = value.as_array()) {
+    for (const toml::node& node : *list) items.push_back(value_text(node));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+  }
+  if (const auto* number = value.as_floating_point()) {  // the fewest digits that read back
+    const std::string text = fmt::format("{}", number->get());
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+  }
+  std::ostringstream out;
+  out << toml::toml_formatter{value, toml::format_flags::none};
+  return std::move(out).str();
 }
 
 ChartTable read_chart(InputFile& file) {

@@ -100,18 +100,24 @@ ExitCode run_chart(ChartArguments arguments) {
   }
   switch (*kind) {
     case ChartKind::mpm:
-      return chart_mpm(common, arguments.file, arguments.quick).code;
+      return told(chart_mpm(common, arguments.file, arguments.quick), common);
     case ChartKind::fit:
-      return chart_fit(common, arguments.file, arguments.quick).code;
+      return told(chart_fit(common, arguments.file, arguments.quick), common);
     case ChartKind::point:
       break;
   }
   if (!arguments.file.empty() && arguments.file != arguments.what)
     throw BadInput({"repose chart point takes no file; it charts its own paths"});
-  return chart_point(common, arguments.file, arguments.quick).code;
+  return told(chart_point(common, arguments.file, arguments.quick), common);
 }
 
 }  // namespace
+
+ExitCode told(const ChartEnd& end, const CommonOptions& options) {
+  if (end.kept && !options.quiet && !options.json)
+    fmt::print("finished already from the same input; without --resume it is made again\n");
+  return end.code;
+}
 
 Command add_chart(CLI::App& root) {
   CLI::App* verb = root.add_subcommand("chart", "Speed against accuracy");

@@ -12,6 +12,8 @@ struct ChartEnd {
   ExitCode code = ExitCode::done;
   bool kept = false;  ///< the result was there already
 };
+/// Says so where a chart was kept; returns its code.
+ExitCode told(const ChartEnd& end, const CommonOptions& options);
 
 /// Work-precision of the point driver's integrators, one-step error maps and the convergence of the
 /// laws' tangents. `file` has a [chart] table or is empty; quick: few settings, coarse maps.

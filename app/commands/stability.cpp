@@ -73,11 +73,7 @@ class Maps {
   }
 
   ChartEnd run() {
-    if (options_.resume && is_finished(folder_, text_)) {
-      if (!options_.quiet && !options_.json)
-        fmt::print("{}: finished already\n", folder_.path().string());
-      return {ExitCode::done, true};
-    }
+    if (options_.resume && is_finished(folder_, text_)) return {ExitCode::done, true};
     if (options_.resume) parts_ = parts_done(folder_, text_);
     if (parts_.is_null()) folder_.remove_old_outputs();
     folder_.write_file("input.toml", text_);
@@ -181,7 +177,7 @@ Command add_stability(CLI::App& root) {
   return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common), [arguments] {
             CommonOptions options = arguments->common;
             if (!arguments->parts.empty()) options.sets.push_back(parts_override(arguments->parts));
-            return stability_maps(options, arguments->file, arguments->quick).code;
+            return told(stability_maps(options, arguments->file, arguments->quick), options);
           }};
 }
 

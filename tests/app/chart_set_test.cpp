@@ -212,11 +212,10 @@ TEST_F(ChartSetTest, SaysWhatIsWrongBeforeAnythingIsRun) {
                 .find("bad.toml:3:1: there are two charts called 'point'"),
             std::string::npos)
       << error_;
-  EXPECT_NE(
-      complaint("[[chart]]\nkind = \"mpm\"\ncels = [0.1]\n")
-          .find("bad.toml:1:3, chart \"mpm\": --set chart.cels=[ 0.1 ]: unknown key 'cels' in "
-                "[chart]; did you mean 'cells'?"),
-      std::string::npos)
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\ncels = [0.1]\n")
+                .find("bad.toml:1:3, chart \"mpm\": --set chart.cels=[0.1]: unknown key 'cels' in "
+                      "[chart]; did you mean 'cells'?"),
+            std::string::npos)
       << error_;
   EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\ninput = \"flat_mui\"\n").find("flat_mui"),
             std::string::npos)
