@@ -90,6 +90,23 @@ void share_range(Axis& axis, const std::vector<double>& values) {
   }
 }
 
+/// Names that the panel beside the legend does not have: a point outside its range each, so that
+/// they stand in the legend all the same. `inside` is an x within the panel.
+void name_the_others(Axes& axes, const std::vector<Column>& columns, const Column& column,
+                     const Styles& style, double inside, bool markers) {
+  if (!axes.y.upper || axes.legend != Legend::right) return;
+  const double outside = 10.0 * std::abs(*axes.y.upper);
+  std::vector<std::string> known;
+  for (const SweepSeries* s : column.series) known.push_back(s->name());
+  for (const Column& other : columns)
+    for (const SweepSeries* s : other.series) {
+      if (std::find(known.begin(), known.end(), s->name()) != known.end()) continue;
+      known.push_back(s->name());
+      axes.line(s->name(), std::array{inside}, std::array{outside},
+                markers ? style(*s) : without_marker(style(*s)));
+    }
+}
+
 /// The legend stands once, beside the last panel of the first row.
 void place_legend(Axes& axes, std::size_t row, std::size_t column, std::size_t columns) {
   axes.legend = row == 0 && column + 1 == columns ? Legend::right : Legend::none;
@@ -165,6 +182,9 @@ Figure step_figure(const std::vector<SweepSeries>& series, const std::string& na
         const Curve curve = curve_of(s->done_runs(), row.x_of, row.y_of);
         axes.line(s->name(), curve.x, curve.y, style(*s));
       }
+      const Curve first = curve_of(columns[c].series.front()->done_runs(), row.x_of, row.y_of);
+      if (!first.x.empty())
+        name_the_others(axes, columns, columns[c], style, first.x.front(), true);
     }
   }
   return figure;
@@ -209,6 +229,7 @@ Figure history_figure(const std::vector<SweepSeries>& series, const std::string&
         if (runs.size() > 1)
           axes.dashed("", curve(*runs.front(), "time_s"), curve(*runs.front(), key), plain);
       }
+      name_the_others(axes, columns, columns[c], style, 0.0, false);
     }
   }
   return figure;

@@ -8,8 +8,8 @@
 namespace repose::app {
 namespace {
 
-/// One colour per transfer, as in the other pictures, or per family where more than transfer and
-/// kernel is varied; the kernel is a marker.
+/// One colour per transfer, as in the other pictures, or per family where there are few or more
+/// than transfer and kernel is varied; the kernel is a marker.
 Style style_of(const SweepFamily& family, const std::vector<SweepFamily>& families) {
   const bool by_family = std::any_of(families.begin(), families.end(), [](const SweepFamily& f) {
     return f.scene().points_per_cell != mpm::Scene{}.points_per_cell ||
@@ -50,7 +50,7 @@ Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReferenc
                   "closer{}",
                   name, reference.name(families), reference.exact ? "" : ", extrapolated",
                   reference.exact ? "" : "; grey: within the reference's error bar"));
-  figure.columns = 3;
+  figure.columns = 4;
   figure.panel_width_px = 340.0;
   figure.panel_height_px = 280.0;
   const double bin = common_bin(runs);
@@ -62,7 +62,7 @@ Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReferenc
     axes.title = title;
     axes.x = {"CPU time (s)", AxisScale::logarithmic};
     axes.y = {"relative error", AxisScale::logarithmic};
-    axes.legend = figure.panels().size() == std::min<std::size_t>(3, quantities.size() + 1)
+    axes.legend = figure.panels().size() == std::min<std::size_t>(4, quantities.size() + 1)
                       ? Legend::right
                       : Legend::none;
     for (const SweepFamily& family : families) {
@@ -140,7 +140,8 @@ Figure flow_figure(std::span<const SweepRun> runs, const SweepReference& referen
     const QuantityCurve exact = curve_of(value->value, q, runs.front().scene(), bin);
     history.dashed("exact", exact.x, exact.y, {Colour::black, 1.2});
     Axes& errors = figure.add_axes();
-    errors.title = fmt::format("error of the {}", name_of(q));
+    errors.title =
+        fmt::format("error of the {}", q == Quantity::momentum ? "momentum" : "kinetic energy");
     errors.x = {"h (mm)", AxisScale::logarithmic};
     errors.y = {"relative error", AxisScale::logarithmic};
     for (const SweepFamily& family : families) {

@@ -93,11 +93,11 @@ Stage shear_to(Condition condition, double gamma) {
   return stage;
 }
 
-/// Sheared at 10/s from p = 1 kPa.
-PointTest shear_test(Condition condition, double gamma) {
+/// Sheared at 10/s.
+PointTest shear_test(Condition condition, double p, double gamma) {
   PointTest test;
   test.path = path_of({shear_to(condition, gamma)});
-  test.initial.p = 1e3;
+  test.initial.p = p;
   test.settings.energy = false;
   return test;
 }
@@ -143,10 +143,11 @@ std::vector<WorkPath> work_paths() {
       {"one-dimensional compression", law, test_of({oedometer}, 1.2)},
       {"undrained, ln v - ln p", other_form,
        test_of({triaxial_to(Condition::undrained, 0.1)}, 1.0)},
-      {"mu(I), sheared at constant volume", grains, shear_test(Condition::constant_volume, 2e-3)},
+      {"mu(I), sheared at constant volume", grains,
+       shear_test(Condition::constant_volume, 1e3, 2e-3)},
       {"mu(I), sheared under constant stress", grains,
-       shear_test(Condition::constant_normal_stress, 2e-3)},
-      {"neo-Hookean, sheared", rubber, shear_test(Condition::constant_volume, 0.5)},
+       shear_test(Condition::constant_normal_stress, 1e3, 2e-3)},
+      {"neo-Hookean, sheared", rubber, shear_test(Condition::constant_volume, 100e3, 0.05)},
   };
 }
 
