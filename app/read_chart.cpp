@@ -111,8 +111,11 @@ ChartTable read_chart(InputFile& file) {
       table.choices("transfers", {mpm::transfer_names.begin(), mpm::transfer_names.end()}));
   sweep.kernels = as<mpm::Kernel>(
       table.choices("kernels", {mpm::kernel_names.begin(), mpm::kernel_names.end()}));
-  if (const auto list = table.number_list(
-          {"points_per_cell", "-", "a square number: 1, 4, 9, 16", Range{1.0, 100.0}, {}}))
+  if (const auto list = table.number_list({"points_per_cell",
+                                           "-",
+                                           "a square number: 1, 4, 9, 16",
+                                           Range{1.0, 100.0, false, false},
+                                           {}}))
     for (const double count : *list) {
       if (count != std::floor(count))
         table.report("points_per_cell",

@@ -1,6 +1,7 @@
 // `repose chart all` and sets of charts: what a set says, that a second run repeats nothing, and
 // that a part that fails does not stop the others. Beside it the two axes that sets use: further
 // keys of the scene, and flows with closed forms.
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -119,6 +120,15 @@ TEST(ReadChartSet, TheShippedSetIsSoundAndQuickReplacesKeys) {
       for (const std::string& one : set.parts[i].sets) EXPECT_EQ(one.find(".quick="), one.npos);
     }
   }
+}
+
+TEST_F(ChartSetTest, TheShippedSetCanBeMade) {
+  const std::string file = write("all.toml", std::string(shipped_chart_set()));
+  const std::array words{"repose", "check", file.c_str()};
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(run_command_line(3, words.data()), 0);
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("mu_i_transfers   mpm, "),
+            std::string::npos);
 }
 
 // The whole gallery in small: every part, its table and picture, the page, and nothing twice.
