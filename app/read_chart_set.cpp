@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "app/read_chart.hpp"
-#include "app/shipped_input.hpp"
 #include "app/toml_reader.hpp"
 
 namespace repose::app {
@@ -30,10 +29,9 @@ bool is_folder_name(const std::string& name) {
          });
 }
 
-/// A file lies beside the set; a shipped scene has its name.
+/// A file lies beside the set; what has neither dot nor slash is the name of a shipped scene.
 std::string found_input(const std::string& input, const std::filesystem::path& folder) {
-  const std::vector<std::string_view> scenes = shipped_scenes();
-  if (input.empty() || std::find(scenes.begin(), scenes.end(), input) != scenes.end()) return input;
+  if (input.find_first_of("./") == std::string::npos) return input;
   return std::filesystem::absolute(folder / input).lexically_normal().string();
 }
 

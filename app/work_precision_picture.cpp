@@ -15,10 +15,13 @@ Style style_of(const SweepFamily& family, const std::vector<SweepFamily>& famili
     return f.scene().points_per_cell != mpm::Scene{}.points_per_cell ||
            !f.runs.front()->varied.empty();
   });
+  const auto k = by_family ? static_cast<std::size_t>(&family - families.data())
+                           : static_cast<std::size_t>(family.scene().transfer);
   Style style;
-  style.colour = cycle_colour(by_family ? static_cast<std::size_t>(&family - families.data())
-                                        : static_cast<std::size_t>(family.scene().transfer));
-  style.marker = family.scene().kernel == mpm::Kernel::cubic ? Marker::circle : Marker::triangle;
+  style.colour = cycle_colour(k);
+  style.marker = family.scene().kernel == mpm::Kernel::quadratic ? Marker::triangle
+                 : k >= 7                                        ? Marker::open_square
+                                                                 : Marker::circle;
   style.marker_px = 5.0;
   return style;
 }

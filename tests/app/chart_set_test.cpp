@@ -213,7 +213,7 @@ TEST_F(ChartSetTest, SaysWhatIsWrongBeforeAnythingIsRun) {
     EXPECT_FALSE(fs::exists(base_ / "bad"));
     return error_;
   };
-  EXPECT_NE(complaint("[[chart]]\nkind = \"mmp\"\n").find("did you mean \"mpm\"?"),
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpmm\"\n").find("did you mean \"mpm\"?"),
             std::string::npos)
       << error_;
   EXPECT_NE(complaint("[[chart]]\nname = \"a\"\n").find("chart[0] needs kind"), std::string::npos)
@@ -223,11 +223,12 @@ TEST_F(ChartSetTest, SaysWhatIsWrongBeforeAnythingIsRun) {
             std::string::npos)
       << error_;
   EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\ncels = [0.1]\n")
-                .find("bad.toml:1:3, chart \"mpm\": --set chart.cels=[0.1]: unknown key 'cels' in "
+                .find("bad.toml:1:1, chart \"mpm\": --set chart.cels=[0.1]: unknown key 'cels' in "
                       "[chart]; did you mean 'cells'?"),
             std::string::npos)
       << error_;
-  EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\ninput = \"flat_mui\"\n").find("flat_mui"),
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\ninput = \"flat_mui\"\n")
+                .find("there is no scene 'flat_mui'"),
             std::string::npos)
       << error_;
   EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\nvary = { \"grid.h\" = [0.1] }\n")
