@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "app/exact_flow.hpp"
+
 namespace repose::app {
 
 using calibration::Resolution;
@@ -15,6 +17,8 @@ std::string SweepFamily::name() const {
       fmt::format("{}, {}", mpm::name_of(scene().transfer), mpm::name_of(scene().kernel));
   if (scene().points_per_cell != mpm::Scene{}.points_per_cell)
     text += fmt::format(", {} points", scene().points_per_cell);
+  if (const std::string variation = runs.front()->variation(); !variation.empty())
+    text += ", " + variation;
   return text;
 }
 
@@ -40,7 +44,8 @@ std::vector<SweepFamily> families_of(std::span<const SweepRun> runs) {
     if (!run.done() || run.scene().dt) continue;
     const auto same = [&](const SweepFamily& f) {
       return f.scene().transfer == run.scene().transfer && f.scene().kernel == run.scene().kernel &&
-             f.scene().points_per_cell == run.scene().points_per_cell;
+             f.scene().points_per_cell == run.scene().points_per_cell &&
+             f.runs.front()->varied == run.varied;
     };
     const auto found = std::find_if(families.begin(), families.end(), same);
     (found == families.end() ? families.emplace_back() : *found).runs.push_back(&run);
@@ -58,12 +63,27 @@ double common_bin(std::span<const SweepRun> runs) {
   return bin;
 }
 
+std::optional<SweepReference> exact_reference(std::span<const SweepRun> runs, ExactFlow flow) {
+  SweepReference reference;
+  reference.exact = flow;
+  const auto done =
+      std::find_if(runs.begin(), runs.end(), [](const SweepRun& run) { return run.done(); });
+  if (done == runs.end()) return {};
+  for (std::size_t q = 0; q < quantity_count; ++q)
+    if (const auto shares = exact_shares(flow, done->scene(), static_cast<Quantity>(q))) {
+      calibration::Reference& value = reference.values[q].emplace();
+      value.value = *shares;
+    }
+  return reference;
+}
+
 std::optional<SweepReference> reference_of(std::span<const SweepRun> runs,
                                            const mpm::Scene& scene) {
   const std::vector<SweepFamily> families = families_of(runs);
   std::optional<SweepReference> reference;
   const auto rank = [&](const SweepFamily& f) {
-    const bool own = f.scene().transfer == scene.transfer && f.scene().kernel == scene.kernel &&
+    const bool own = f.runs.front()->varied == runs.front().varied &&
+                     f.scene().transfer == scene.transfer && f.scene().kernel == scene.kernel &&
                      f.scene().points_per_cell == scene.points_per_cell;
     return std::pair(-f.cells().back(), own);
   };
@@ -111,6 +131,12 @@ std::vector<bool> pareto_front(std::span<const SweepRun> runs, Quantity q,
     }
   }
   return front;
+}
+
+std::string SweepReference::name(std::span<const SweepFamily> families) const {
+  if (exact)
+    return fmt::format("the closed form of {}", exact_flow_names[static_cast<std::size_t>(*exact)]);
+  return families[family].name();
 }
 
 calibration::ShownErrors shown_errors(const SweepFamily& family, Quantity q,

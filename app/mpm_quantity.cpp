@@ -35,11 +35,14 @@ class Volume {
 
 std::string_view column_of(Quantity q) {
   constexpr std::array<std::string_view, quantity_count> columns{
-      "front_m", "front_99_m", "height_m", "depth_m", "kinetic_J_per_m"};
+      "front_m", "front_99_m", "height_m", "depth_m", "kinetic_J_per_m", "momentum_x"};
   return columns[static_cast<std::size_t>(q)];
 }
 
-std::string_view unit_of(Quantity q) { return q == Quantity::kinetic ? "J/m" : "m"; }
+std::string_view unit_of(Quantity q) {
+  if (q == Quantity::momentum) return "kg/s";  // kg m/s per m
+  return q == Quantity::kinetic ? "J/m" : "m";
+}
 
 VectorXd shares_of(const SweepRun& run, Quantity q, double bin) {
   if (!is_curve(q)) return VectorXd::Constant(1, run.figure(column_of(q)));
@@ -52,9 +55,11 @@ VectorXd shares_of(const SweepRun& run, Quantity q, double bin) {
                   volume.left_of(static_cast<double>(i) * bin);
     return shares;
   }
-  const std::vector<double>& energy = run.series.find(column_of(q))->second;
+  const auto column = run.series.find(column_of(q));
+  if (column == run.series.end()) return VectorXd::Constant(1, std::nan(""));
+  const std::vector<double>& rows = column->second;
   return run.scene().series_interval *
-         Eigen::Map<const VectorXd>(energy.data(), static_cast<Index>(energy.size()));
+         Eigen::Map<const VectorXd>(rows.data(), static_cast<Index>(rows.size()));
 }
 
 QuantityCurve curve_of(const VectorXd& shares, Quantity q, const mpm::Scene& scene, double bin) {

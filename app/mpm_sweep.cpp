@@ -1,12 +1,14 @@
 #include "app/mpm_sweep.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "app/finished_result.hpp"
 #include "app/resolved_input.hpp"
 #include "app/result_folder.hpp"
 #include "app/run_record.hpp"
@@ -17,13 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int rows_of_series = 60;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return in ? std::move(text).str() : "";
-}
 
 /// The columns of a table of numbers that this program has written.
 std::map<std::string, std::vector<double>, std::less<>> columns_of(const fs::path& file) {
@@ -125,7 +120,7 @@ double SweepRun::figure(std::string_view key) const {
 }
 
 SweepRun run_of(const SceneFile& base, mpm::Scene scene) {
-  SweepRun run{base, {}, {}, {}, {}};
+  SweepRun run{base, {}, {}, {}, {}, {}};
   scene.frame_interval = 0.0;
   scene.series_interval = scene.end_time / rows_of_series;
   mpm::raise_top_to_cells(scene);
@@ -135,8 +130,11 @@ SweepRun run_of(const SceneFile& base, mpm::Scene scene) {
   return run;
 }
 
-std::vector<SweepRun> runs_of(const SceneFile& base, const Sweep& sweep) {
-  std::vector<SweepRun> runs;
+namespace {
+
+/// Every combination for one scene, and if asked for the finer cells of the reference.
+void add_runs(const SceneFile& base, const Sweep& sweep, bool with_reference,
+              std::vector<SweepRun>& runs) {
   const auto descending = [](auto values) {
     std::sort(values.rbegin(), values.rend());
     values.erase(std::unique(values.begin(), values.end()), values.end());
@@ -170,7 +168,44 @@ std::vector<SweepRun> runs_of(const SceneFile& base, const Sweep& sweep) {
         scene.points_per_cell = static_cast<int>(points);
         for (const double h : descending(sweep.cells)) add(scene, h);
       }
-  for (const double h : descending(sweep.reference)) add(base.scene, h);
+  if (with_reference)
+    for (const double h : descending(sweep.reference)) add(base.scene, h);
+}
+
+/// "_sleep_speed0.003" of "sleep_speed 0.003": what a folder's name may hold.
+std::string file_suffix(const std::string& variation) {
+  if (variation.empty()) return "";
+  std::string suffix = "_";
+  for (const char c : variation)
+    if (std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '_' || c == '+')
+      suffix += c;
+  return suffix;
+}
+
+}  // namespace
+
+std::string SweepRun::variation() const {
+  std::string text;
+  for (const auto& [key, value] : varied)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key.substr(key.rfind('.') + 1), value);
+  return text;
+}
+
+std::vector<SweepRun> runs_of(const SceneFile& scene, const Sweep& sweep) {
+  const SceneVariant only{scene, {}};
+  return runs_of(std::span(&only, 1), sweep);
+}
+
+std::vector<SweepRun> runs_of(std::span<const SceneVariant> variants, const Sweep& sweep) {
+  std::vector<SweepRun> runs;
+  for (const SceneVariant& variant : variants) {
+    const std::size_t before = runs.size();
+    add_runs(variant.file, sweep, &variant == &variants.front(), runs);
+    for (std::size_t i = before; i < runs.size(); ++i) {
+      runs[i].varied = variant.values;
+      runs[i].file.scene.name += file_suffix(runs[i].variation());
+    }
+  }
   return runs;
 }
 
@@ -180,12 +215,21 @@ std::vector<SweepSeries> series_of(std::span<const SweepRun> runs) {
     const auto same = [&](const SweepSeries& s) {
       return s.scene().transfer == run.scene().transfer && s.scene().kernel == run.scene().kernel &&
              s.scene().points_per_cell == run.scene().points_per_cell &&
-             s.scene().h == run.scene().h;
+             s.runs.front()->varied == run.varied && s.scene().h == run.scene().h;
     };
     const auto found = std::find_if(list.begin(), list.end(), same);
     (found == list.end() ? list.emplace_back() : *found).runs.push_back(&run);
   }
   return list;
+}
+
+std::string SweepSeries::name() const {
+  std::string text(mpm::name_of(scene().transfer));
+  if (scene().points_per_cell != mpm::Scene{}.points_per_cell)
+    text += fmt::format(", {} points", scene().points_per_cell);
+  if (const std::string variation = runs.front()->variation(); !variation.empty())
+    text += ", " + variation;
+  return text;
 }
 
 const SweepRun* SweepSeries::finest() const {

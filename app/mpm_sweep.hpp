@@ -21,14 +21,23 @@ namespace repose::app {
 Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick,
                     std::vector<std::string>& notes);
 
+/// A scene with one value of every key of Sweep::vary.
+struct SceneVariant {
+  SceneFile file;
+  std::vector<std::pair<std::string, std::string>> values;  ///< key and value, in that order
+};
+
 /// One run of a sweep and, once it is there, its result. Figures keep the names of summary.json.
 struct SweepRun {
-  SceneFile file;          ///< named after what is varied, with 60 rows of series
-  nlohmann::json summary;  ///< null: no result yet
+  SceneFile file;  ///< named after what is varied, with 60 rows of series
+  std::vector<std::pair<std::string, std::string>> varied;         ///< as in SceneVariant
+  nlohmann::json summary;                                          ///< null: no result yet
   std::map<std::string, std::vector<double>, std::less<>> series;  ///< columns of series.csv
   std::vector<double> x_m, depth_m;                                ///< profile.csv
 
   const mpm::Scene& scene() const { return file.scene; }
+  /// "sleep_speed 0.003"; "" where nothing but what has a list of its own is varied.
+  std::string variation() const;
   /// "" as long as there is no result.
   std::string status() const { return summary.is_object() ? summary.value("status", "") : ""; }
   bool done() const { return status() == "done"; }
@@ -49,11 +58,16 @@ SweepRun run_of(const SceneFile& base, mpm::Scene scene);
 /// steps first; then those of Sweep::reference. A transfer's own settings are the scene's. Errors:
 /// InputError, key "chart.cells" or "chart.transfers".
 std::vector<SweepRun> runs_of(const SceneFile& scene, const Sweep& sweep);
+/// The same for every variant of a scene, one after the other; Sweep::reference with the first.
+std::vector<SweepRun> runs_of(std::span<const SceneVariant> variants, const Sweep& sweep);
 
-/// Runs of one transfer, kernel, points per cell and cell size: what only the step tells apart.
+/// Runs of one variant, transfer, kernel, points per cell and cell size: what only the step tells
+/// apart.
 struct SweepSeries {
   std::vector<const SweepRun*> runs;  ///< all of them, as in the sweep
   const mpm::Scene& scene() const { return runs.front()->scene(); }
+  /// "relaxed", and what of points per cell and Sweep::vary is not the scene's usual.
+  std::string name() const;
   /// The finished run with the shortest mean step; null as long as a run has no result.
   const SweepRun* finest() const;
   /// The finished ones, longest mean step first.

@@ -12,15 +12,36 @@ namespace {
 using Figure_of = std::function<double(const SweepRun&)>;
 
 /// Seven colours, then the same seven with another marker.
-Style style_of(mpm::Transfer transfer) {
+Style style_number(std::size_t k) {
   constexpr std::array markers{Marker::circle, Marker::open_square, Marker::triangle};
-  const auto k = static_cast<std::size_t>(transfer);
   Style style;
   style.colour = cycle_colour(k);
   style.marker = markers[k / 7 % markers.size()];
   style.marker_px = 5.5;
   return style;
 }
+
+/// A transfer has its own style in every picture, unless something else than the transfer, the
+/// kernel, the cells and the step is varied: then every name has.
+class Styles {
+ public:
+  explicit Styles(const std::vector<SweepSeries>& series) {
+    for (const SweepSeries& s : series) {
+      if (s.name() != mpm::name_of(s.scene().transfer)) by_name_ = true;
+      if (std::find(names_.begin(), names_.end(), s.name()) == names_.end())
+        names_.push_back(s.name());
+    }
+  }
+  Style operator()(const SweepSeries& s) const {
+    if (!by_name_) return style_number(static_cast<std::size_t>(s.scene().transfer));
+    const auto at = std::find(names_.begin(), names_.end(), s.name());
+    return style_number(static_cast<std::size_t>(at - names_.begin()));
+  }
+
+ private:
+  bool by_name_ = false;
+  std::vector<std::string> names_;
+};
 
 Style without_marker(Style style) {
   style.marker.reset();
@@ -69,6 +90,23 @@ void share_range(Axis& axis, const std::vector<double>& values) {
   }
 }
 
+/// Names that the panel beside the legend does not have: a point outside its range each, so that
+/// they stand in the legend all the same. `inside` is an x within the panel.
+void name_the_others(Axes& axes, const std::vector<Column>& columns, const Column& column,
+                     const Styles& style, double inside, bool markers) {
+  if (!axes.y.upper || axes.legend != Legend::right) return;
+  const double outside = 10.0 * std::abs(*axes.y.upper);
+  std::vector<std::string> known;
+  for (const SweepSeries* s : column.series) known.push_back(s->name());
+  for (const Column& other : columns)
+    for (const SweepSeries* s : other.series) {
+      if (std::find(known.begin(), known.end(), s->name()) != known.end()) continue;
+      known.push_back(s->name());
+      axes.line(s->name(), std::array{inside}, std::array{outside},
+                markers ? style(*s) : without_marker(style(*s)));
+    }
+}
+
 /// The legend stands once, beside the last panel of the first row.
 void place_legend(Axes& axes, std::size_t row, std::size_t column, std::size_t columns) {
   axes.legend = row == 0 && column + 1 == columns ? Legend::right : Legend::none;
@@ -95,6 +133,7 @@ Figure step_figure(const std::vector<SweepSeries>& series, const std::string& na
   Figure figure("Does the run-out depend on the step?",
                 name + "; the change of the profile is that from the shortest step");
   const std::vector<Column> columns = columns_of(series);
+  const Styles style(series);
   figure.columns = std::max<std::size_t>(1, columns.size());
   figure.panel_width_px = 380.0;
   figure.panel_height_px = 230.0;
@@ -141,9 +180,11 @@ Figure step_figure(const std::vector<SweepSeries>& series, const std::string& na
       place_legend(axes, r, c, columns.size());
       for (const SweepSeries* s : columns[c].series) {
         const Curve curve = curve_of(s->done_runs(), row.x_of, row.y_of);
-        axes.line(std::string(mpm::name_of(s->scene().transfer)), curve.x, curve.y,
-                  style_of(s->scene().transfer));
+        axes.line(s->name(), curve.x, curve.y, style(*s));
       }
+      const Curve first = curve_of(columns[c].series.front()->done_runs(), row.x_of, row.y_of);
+      if (!first.x.empty())
+        name_the_others(axes, columns, columns[c], style, first.x.front(), true);
     }
   }
   return figure;
@@ -153,6 +194,7 @@ Figure history_figure(const std::vector<SweepSeries>& series, const std::string&
   Figure figure("Collapses with long and short steps",
                 name + "; solid: the shortest step, dashed: the longest");
   const std::vector<Column> columns = columns_of(series);
+  const Styles style(series);
   figure.columns = std::max<std::size_t>(1, columns.size());
   figure.panel_width_px = 380.0;
   figure.panel_height_px = 260.0;
@@ -178,16 +220,16 @@ Figure history_figure(const std::vector<SweepSeries>& series, const std::string&
       place_legend(axes, r, c, columns.size());
       for (const SweepSeries* s : columns[c].series) {
         const std::vector<const SweepRun*> runs = s->done_runs();
-        const Style style = without_marker(style_of(s->scene().transfer));
+        const Style plain = without_marker(style(*s));
         const auto curve = [&](const SweepRun& run, const char* column) {
           const std::vector<double>& values = run.series.find(column)->second;
           return std::span(values).subspan(1);
         };
-        axes.line(std::string(mpm::name_of(s->scene().transfer)), curve(*runs.back(), "time_s"),
-                  curve(*runs.back(), key), style);
+        axes.line(s->name(), curve(*runs.back(), "time_s"), curve(*runs.back(), key), plain);
         if (runs.size() > 1)
-          axes.dashed("", curve(*runs.front(), "time_s"), curve(*runs.front(), key), style);
+          axes.dashed("", curve(*runs.front(), "time_s"), curve(*runs.front(), key), plain);
       }
+      name_the_others(axes, columns, columns[c], style, 0.0, false);
     }
   }
   return figure;
@@ -198,24 +240,25 @@ Figure cost_figure(const std::vector<SweepSeries>& series, const std::string& na
   figure.columns = 3;
   figure.panel_width_px = 330.0;
   figure.panel_height_px = 280.0;
-  // the longest step of every transfer and kernel, over the cell sizes
+  // the longest step of every name and kernel, over the cell sizes
   struct Line {
-    mpm::Transfer transfer;
-    mpm::Kernel kernel;
+    const SweepSeries* first;
     std::vector<const SweepRun*> runs;
+    mpm::Kernel kernel() const { return first->scene().kernel; }
   };
+  const Styles style_of(series);
   std::vector<Line> lines;
   for (const SweepSeries& s : series) {
     if (s.done_runs().empty()) continue;
     const auto found = std::find_if(lines.begin(), lines.end(), [&](const Line& l) {
-      return l.transfer == s.scene().transfer && l.kernel == s.scene().kernel;
+      return l.first->name() == s.name() && l.kernel() == s.scene().kernel;
     });
-    (found == lines.end() ? lines.emplace_back(Line{s.scene().transfer, s.scene().kernel, {}})
-                          : *found)
+    (found == lines.end() ? lines.emplace_back(Line{&s, {}}) : *found)
         .runs.push_back(s.done_runs().front());
   }
-  const bool several_kernels = std::any_of(
-      lines.begin(), lines.end(), [&](const Line& l) { return l.kernel != lines.front().kernel; });
+  const bool several_kernels = std::any_of(lines.begin(), lines.end(), [&](const Line& l) {
+    return l.kernel() != lines.front().kernel();
+  });
   struct Panel {
     Axis x, y;
     Figure_of x_of, y_of;
@@ -242,10 +285,10 @@ Figure cost_figure(const std::vector<SweepSeries>& series, const std::string& na
     axes.legend = p + 1 == panels.size() ? Legend::right : Legend::none;
     for (const Line& line : lines) {
       const Curve curve = curve_of(line.runs, panels[p].x_of, panels[p].y_of);
-      std::string label(mpm::name_of(line.transfer));
-      if (several_kernels) label += fmt::format(", {}", mpm::name_of(line.kernel));
-      const Style style = style_of(line.transfer);
-      if (line.kernel == mpm::Kernel::cubic || !several_kernels)
+      std::string label = line.first->name();
+      if (several_kernels) label += fmt::format(", {}", mpm::name_of(line.kernel()));
+      const Style style = style_of(*line.first);
+      if (line.kernel() == mpm::Kernel::cubic || !several_kernels)
         axes.line(label, curve.x, curve.y, style);
       else
         axes.dashed(label, curve.x, curve.y, style);

@@ -32,13 +32,30 @@ constexpr std::array<std::string_view, 17> copied{"points",
 /// A cell of a table: empty where there is no number.
 std::string cell(double x) { return std::isfinite(x) ? fmt::format("{:.10g}", x) : ""; }
 
-/// transfer,kernel,points_per_cell,h_m,courant,dt_s: which run a row belongs to.
-std::string key_cells(const mpm::Scene& scene) {
-  return fmt::format("{},{},{},{},{},{}", mpm::name_of(scene.transfer), mpm::name_of(scene.kernel),
-                     scene.points_per_cell, scene.h, scene.dt ? "" : cell(scene.courant),
-                     scene.dt ? cell(*scene.dt) : "");
+/// A value of Sweep::vary as a cell; lists and tables have commas.
+std::string quoted(const std::string& value) {
+  std::string text;
+  for (const char c : value) text += c == '"' ? std::string() : std::string(1, c);
+  return text.find(',') == std::string::npos ? text : fmt::format("\"{}\"", text);
 }
-constexpr std::string_view key_columns = "transfer,kernel,points_per_cell,h_m,courant,dt_s";
+
+/// transfer,kernel,points_per_cell,h_m,courant,dt_s and the keys of Sweep::vary: which run a row
+/// belongs to.
+std::string key_cells(const SweepRun& run) {
+  const mpm::Scene& scene = run.scene();
+  std::string text =
+      fmt::format("{},{},{},{},{},{}", mpm::name_of(scene.transfer), mpm::name_of(scene.kernel),
+                  scene.points_per_cell, scene.h, scene.dt ? "" : cell(scene.courant),
+                  scene.dt ? cell(*scene.dt) : "");
+  for (const auto& [key, value] : run.varied) text += "," + quoted(value);
+  return text;
+}
+std::string key_columns(std::span<const SweepRun> runs) {
+  std::string text = "transfer,kernel,points_per_cell,h_m,courant,dt_s";
+  if (!runs.empty())
+    for (const auto& [key, value] : runs.front().varied) text += "," + key;
+  return text;
+}
 
 Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
@@ -63,12 +80,12 @@ std::string sweep_csv(std::span<const SweepRun> runs) {
       "{},status,mean_dt_s,{},point_steps_per_cpu_s,bytes_per_point,front_change,front_99_change,"
       "height_change,"
       "profile_change_mean,profile_change_max\n",
-      key_columns, fmt::join(copied, ","));
+      key_columns(runs), fmt::join(copied, ","));
   for (const SweepSeries& series : series_of(runs)) {
     const SweepRun* finest = series.finest();
     for (const SweepRun* run : series.runs) {
       if (run->status().empty()) continue;
-      text += fmt::format("{},{},{}", key_cells(run->scene()), run->status(), cell(run->mean_dt()));
+      text += fmt::format("{},{},{}", key_cells(*run), run->status(), cell(run->mean_dt()));
       for (const std::string_view key : copied) text += "," + cell(run->figure(key));
       text += "," + cell(run->point_steps_per_cpu_s()) + "," + cell(run->bytes_per_point());
       const auto change = finest == nullptr ? std::nullopt : change_between(*run, *finest);
@@ -82,21 +99,22 @@ std::string sweep_csv(std::span<const SweepRun> runs) {
 }
 
 std::string history_csv(std::span<const SweepRun> runs) {
-  constexpr std::array<std::string_view, 9> columns{"time_s",
-                                                    "front_m",
-                                                    "front_99_m",
-                                                    "front_max_m",
-                                                    "height_m",
-                                                    "kinetic_J_per_m",
-                                                    "angular_momentum",
-                                                    "transfer_loss_J_per_m",
-                                                    "energy_residual_J_per_m"};
-  std::string text = fmt::format("{},{}\n", key_columns, fmt::join(columns, ","));
+  constexpr std::array<std::string_view, 10> columns{"time_s",
+                                                     "front_m",
+                                                     "front_99_m",
+                                                     "front_max_m",
+                                                     "height_m",
+                                                     "kinetic_J_per_m",
+                                                     "momentum_x",
+                                                     "angular_momentum",
+                                                     "transfer_loss_J_per_m",
+                                                     "energy_residual_J_per_m"};
+  std::string text = fmt::format("{},{}\n", key_columns(runs), fmt::join(columns, ","));
   for (const SweepRun& run : runs) {
     const auto time = run.series.find("time_s");
     if (time == run.series.end()) continue;
     for (std::size_t i = 0; i < time->second.size(); ++i) {
-      text += key_cells(run.scene());
+      text += key_cells(run);
       for (const std::string_view column : columns)
         text += "," + cell(run.series.find(column)->second[i]);
       text += "\n";
@@ -109,7 +127,8 @@ Json sweep_answer(const std::vector<SweepSeries>& series) {
   Json answer = Json::array();
   for (const SweepSeries& s : series) {
     const std::vector<const SweepRun*> runs = s.done_runs();
-    Json line{{"transfer", mpm::name_of(s.scene().transfer)},
+    Json line{{"name", s.name()},
+              {"transfer", mpm::name_of(s.scene().transfer)},
               {"kernel", mpm::name_of(s.scene().kernel)},
               {"points_per_cell", s.scene().points_per_cell},
               {"h_m", s.scene().h},
@@ -142,11 +161,11 @@ std::string answer_text(const Json& answer) {
                        fmt::format(fmt::runtime(format), scale * number(line[key][1])));
   };
   std::string text =
-      fmt::format("{:<9} {:<9} {:>7}  {:<14} {:<16} {:<16} {:<16} {:<18} {:<14} {}\n", "transfer",
+      fmt::format("{:<22} {:<9} {:>7}  {:<14} {:<16} {:<16} {:<16} {:<18} {:<14} {}\n", "transfer",
                   "kernel", "h (mm)", "step (µs)", "front (m)", "99 % front (m)", "height (m)",
                   "kinetic (J/m)", "CPU (s)", "step/4: front, 99 %, height, profile");
   for (const Json& line : answer) {
-    text += fmt::format("{:<9} {:<9} {:>7.4g}  ", line["transfer"].get<std::string>(),
+    text += fmt::format("{:<22} {:<9} {:>7.4g}  ", line["name"].get<std::string>(),
                         line["kernel"].get<std::string>(), 1e3 * line["h_m"].get<double>());
     if (!line.contains("front_m")) {
       text += "no run came to its end\n";
@@ -173,7 +192,7 @@ std::string answer_text(const Json& answer) {
 }
 
 std::string errors_csv(std::span<const SweepRun> runs, const SweepReference& reference) {
-  std::string text = std::string(key_columns) + ",cpu_s";
+  std::string text = key_columns(runs) + ",cpu_s";
   std::array<std::vector<bool>, quantity_count> fronts;
   for (std::size_t q = 0; q < quantity_count; ++q) {
     text += fmt::format(",{0}_error,{0}_pareto", quantity_names[q]);
@@ -183,7 +202,7 @@ std::string errors_csv(std::span<const SweepRun> runs, const SweepReference& ref
   const double bin = common_bin(runs);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!runs[i].done()) continue;
-    text += key_cells(runs[i].scene()) + "," + cell(runs[i].figure("cpu_s"));
+    text += key_cells(runs[i]) + "," + cell(runs[i].figure("cpu_s"));
     for (std::size_t q = 0; q < quantity_count; ++q) {
       const double error = error_of(runs[i], static_cast<Quantity>(q), reference, bin);
       text += fmt::format(",{},{}", cell(error),
@@ -207,16 +226,20 @@ std::string curve_csv(const Eigen::VectorXd& shares, Quantity q, const mpm::Scen
 Json errors_answer(std::span<const SweepRun> runs, const SweepReference& reference) {
   const std::vector<SweepFamily> families = families_of(runs);
   const double bin = common_bin(runs);
-  Json answer{{"from", families[reference.family].name()},
-              {"cells_m", reference.cells},
-              {"steps", reference.steps}};
+  Json answer{{"from", reference.name(families)}};
+  if (!reference.exact) {
+    answer["cells_m"] = reference.cells;
+    answer["steps"] = reference.steps;
+  }
   for (std::size_t q = 0; q < quantity_count; ++q) {
     const auto& value = reference.values[q];
     if (!value) continue;
     Json& entry = answer["reference"][std::string(quantity_names[q])];
-    entry = {{"error_bar", value->error},
-             {"order_observed", finite_or_null(value->observed)},
-             {"order_used", value->order}};
+    entry = {{"error_bar", value->error}};
+    if (!reference.exact) {
+      entry["order_observed"] = finite_or_null(value->observed);
+      entry["order_used"] = value->order;
+    }
     if (!is_curve(static_cast<Quantity>(q))) entry["value"] = value->value[0];
   }
   Json& list = answer["families"] = Json::array();
@@ -227,12 +250,19 @@ Json errors_answer(std::span<const SweepRun> runs, const SweepReference& referen
       if (!reference.values[k]) continue;
       const auto levels = family.levels(q, bin);
       Json orders = Json::array(), errors = Json::array();
-      for (std::size_t i = 0; i + 2 < levels.size(); ++i)
-        orders.push_back(
-            finite_or_null(calibration::observed_order(levels[i], levels[i + 1], levels[i + 2])));
       for (const auto& level : levels)
         errors.push_back(calibration::relative_distance(level.mean(), reference.values[k]->value));
-      const calibration::ShownErrors shown = shown_errors(family, q, reference, bin);
+      if (reference.exact)  // two errors make an order, where the limit is known
+        for (std::size_t i = 0; i + 1 < levels.size(); ++i)
+          orders.push_back(
+              finite_or_null(std::log(errors[i].get<double>() / errors[i + 1].get<double>()) /
+                             std::log(levels[i].h / levels[i + 1].h)));
+      else
+        for (std::size_t i = 0; i + 2 < levels.size(); ++i)
+          orders.push_back(
+              finite_or_null(calibration::observed_order(levels[i], levels[i + 1], levels[i + 2])));
+      const calibration::ShownErrors shown =
+          reference.exact ? calibration::ShownErrors{} : shown_errors(family, q, reference, bin);
       list.push_back({{"family", family.name()},
                       {"law", family.scene().bodies.front().law.name},
                       {"kernel", mpm::name_of(family.scene().kernel)},
@@ -258,11 +288,16 @@ std::string errors_text(const Json& answer) {
               (x.is_number() ? fmt::format(fmt::runtime(format), scale * x.get<double>()) : "-");
     return text;
   };
+  const bool extrapolated = answer.contains("cells_m");
   std::string text =
-      fmt::format("\nreference: {}, extrapolated from cells of {} mm, {} steps each\n",
-                  answer["from"].get<std::string>(), numbers(answer["cells_m"], 1e3, "{:.4g}"),
-                  answer["steps"].get<std::size_t>());
-  for (const auto& [name, entry] : answer["reference"].items())
+      extrapolated
+          ? fmt::format("\nreference: {}, extrapolated from cells of {} mm, {} steps each\n",
+                        answer["from"].get<std::string>(),
+                        numbers(answer["cells_m"], 1e3, "{:.4g}"),
+                        answer["steps"].get<std::size_t>())
+          : fmt::format("\nreference: {}\n", answer["from"].get<std::string>());
+  for (const auto& [name, entry] : answer["reference"].items()) {
+    if (!extrapolated) continue;
     text +=
         fmt::format("  {:<9} {:<11} ± {:.2g} %   order {}\n", name,
                     entry.contains("value") ? fmt::format("{:.4f} m", entry["value"].get<double>())
@@ -271,11 +306,12 @@ std::string errors_text(const Json& answer) {
                     entry["order_observed"].is_number()
                         ? fmt::format("{:.2f}", entry["order_observed"].get<double>())
                         : std::string("not observed, 1 taken"));
-  text += fmt::format("{:<22} {:<9} {:<34} {}\n", "errors from it", "", "coarse to fine (%)",
+  }
+  text += fmt::format("{:<34} {:<9} {:<34} {}\n", "errors from it", "", "coarse to fine (%)",
                       "observed orders");
   for (const Json& line : answer["families"])
     text +=
-        fmt::format("{:<22} {:<9} {:<34} {}\n", line["family"].get<std::string>(),
+        fmt::format("{:<34} {:<9} {:<34} {}\n", line["family"].get<std::string>(),
                     line["quantity"].get<std::string>(), numbers(line["errors"], 100.0, "{:.2g}"),
                     numbers(line["orders"], 1.0, "{:.2f}"));
   return text;

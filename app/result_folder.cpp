@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 49> outputs{"summary.json",
+constexpr std::array<std::string_view, 52> outputs{"summary.json",
                                                    "checkpoint.h5",
                                                    "series.csv",
                                                    "profile.csv",
@@ -66,6 +66,9 @@ constexpr std::array<std::string_view, 49> outputs{"summary.json",
                                                    "work_precision.svg",
                                                    "reference_profile.csv",
                                                    "reference_kinetic.csv",
+                                                   "reference_momentum.csv",
+                                                   "tangent.csv",
+                                                   "tangent.svg",
                                                    "accuracy.csv",
                                                    "accuracy.svg",
                                                    "estimate.csv",

@@ -8,12 +8,20 @@
 namespace repose::app {
 namespace {
 
-/// One colour per transfer, as in the other pictures; the kernel and the points are markers.
-Style style_of(const mpm::Scene& scene) {
+/// One colour per transfer, as in the other pictures, or per family where there are few or more
+/// than transfer and kernel is varied; the kernel is a marker.
+Style style_of(const SweepFamily& family, const std::vector<SweepFamily>& families) {
+  const bool by_family = std::any_of(families.begin(), families.end(), [](const SweepFamily& f) {
+    return f.scene().points_per_cell != mpm::Scene{}.points_per_cell ||
+           !f.runs.front()->varied.empty();
+  });
+  const auto k = by_family ? static_cast<std::size_t>(&family - families.data())
+                           : static_cast<std::size_t>(family.scene().transfer);
   Style style;
-  style.colour = cycle_colour(static_cast<std::size_t>(scene.transfer));
-  style.marker = scene.kernel == mpm::Kernel::cubic ? Marker::circle : Marker::triangle;
-  if (scene.points_per_cell != mpm::Scene{}.points_per_cell) style.marker = Marker::square;
+  style.colour = cycle_colour(k);
+  style.marker = family.scene().kernel == mpm::Kernel::quadratic ? Marker::triangle
+                 : k >= 7                                        ? Marker::open_square
+                                                                 : Marker::circle;
   style.marker_px = 5.0;
   return style;
 }
@@ -41,10 +49,11 @@ Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReferenc
   const std::vector<SweepFamily> families = families_of(runs);
   Figure figure(
       "What accuracy a second buys",
-      fmt::format("{}; from {}, extrapolated; lines: the longest steps; rings: nothing is "
-                  "both cheaper and closer; grey: within the reference's error bar",
-                  name, families[reference.family].name()));
-  figure.columns = 3;
+      fmt::format("{}; against {}{}; lines: the longest steps; rings: nothing is both cheaper and "
+                  "closer{}",
+                  name, reference.name(families), reference.exact ? "" : ", extrapolated",
+                  reference.exact ? "" : "; grey: within the reference's error bar"));
+  figure.columns = 4;
   figure.panel_width_px = 340.0;
   figure.panel_height_px = 280.0;
   const double bin = common_bin(runs);
@@ -56,14 +65,14 @@ Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReferenc
     axes.title = title;
     axes.x = {"CPU time (s)", AxisScale::logarithmic};
     axes.y = {"relative error", AxisScale::logarithmic};
-    axes.legend = figure.panels().size() == std::min<std::size_t>(3, quantities.size() + 1)
+    axes.legend = figure.panels().size() == std::min<std::size_t>(4, quantities.size() + 1)
                       ? Legend::right
                       : Legend::none;
     for (const SweepFamily& family : families) {
       Dots line, others;
       for (const SweepRun* run : family.runs)
         (has_longest_step(*run, family) ? line : others).add(run->figure("cpu_s"), error(*run));
-      Style style = style_of(family.scene());
+      Style style = style_of(family, families);
       axes.line(family.name(), line.x, line.y, style);
       style.marker_px = 3.0;
       if (!others.x.empty()) axes.points("", others.x, others.y, style);
@@ -90,6 +99,7 @@ Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReferenc
     ring.marker_px = 10.0;
     axes.points(q == quantities.front() || quantities.size() > 2 ? "Pareto front" : "", rings.x,
                 rings.y, ring);
+    if (reference.exact) continue;
     const double bar = reference.values[static_cast<std::size_t>(q)]->error;
     Style grey;
     grey.colour = Colour::grey;
@@ -99,6 +109,62 @@ Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReferenc
     axes.band("", xs, bottom, top, grey);
   }
   panel("energy ledger", [](const SweepRun& run) { return run.figure("energy_error"); });
+  return figure;
+}
+
+Figure flow_figure(std::span<const SweepRun> runs, const SweepReference& reference,
+                   const std::string& name) {
+  const std::vector<SweepFamily> families = families_of(runs);
+  Figure figure("A flow against its closed form",
+                name +
+                    "; black: exact; lines: the longest step of the first method, from coarse "
+                    "cells to fine");
+  figure.columns = 2;
+  figure.panel_width_px = 400.0;
+  figure.panel_height_px = 280.0;
+  const double bin = common_bin(runs);
+  for (const Quantity q : {Quantity::momentum, Quantity::kinetic}) {
+    const auto& value = reference.values[static_cast<std::size_t>(q)];
+    if (!value || families.empty()) continue;
+    const std::string what =
+        q == Quantity::momentum ? "momentum along x (kg/s)" : "kinetic energy (J/m)";
+    Axes& history = figure.add_axes();
+    history.x.label = "time (s)";
+    history.y.label = what;
+    std::size_t colour = 0;
+    for (const SweepRun* run : families.front().runs) {
+      if (!has_longest_step(*run, families.front())) continue;
+      Style style;
+      style.colour = cycle_colour(colour++);
+      history.line(fmt::format("h = {:.4g} mm", 1e3 * run->scene().h),
+                   run->series.find("time_s")->second, run->series.find(column_of(q))->second,
+                   style);
+    }
+    const QuantityCurve exact = curve_of(value->value, q, runs.front().scene(), bin);
+    history.dashed("exact", exact.x, exact.y, {Colour::black, 1.2});
+    Axes& errors = figure.add_axes();
+    errors.title =
+        fmt::format("error of the {}", q == Quantity::momentum ? "momentum" : "kinetic energy");
+    errors.x = {"h (mm)", AxisScale::logarithmic};
+    errors.y = {"relative error", AxisScale::logarithmic};
+    for (const SweepFamily& family : families) {
+      Dots line, others;
+      for (const SweepRun* run : family.runs)
+        (has_longest_step(*run, family) ? line : others)
+            .add(1e3 * run->scene().h, error_of(*run, q, reference, bin));
+      Style style = style_of(family, families);
+      errors.line(family.name(), line.x, line.y, style);
+      style.marker_px = 3.0;
+      if (!others.x.empty()) errors.points("", others.x, others.y, style);
+      if (&family != &families.front() || line.x.empty()) continue;
+      for (const double order : {1.0, 2.0}) {  // slopes through the coarsest run
+        std::vector<double> y;
+        for (const double h : line.x)
+          y.push_back(line.y.front() * std::pow(h / line.x.front(), order));
+        errors.dashed(order == 1.0 ? "h and h^{2}" : "", line.x, y, {Colour::grey, 1.0});
+      }
+    }
+  }
   return figure;
 }
 

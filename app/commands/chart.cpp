@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/read_chart.hpp"
+#include "app/read_chart_set.hpp"
 
 namespace repose::app {
 namespace {
@@ -49,37 +50,42 @@ std::string override_of(const ListOption& option, const std::string& list) {
   return fmt::format("chart.{}=[{}]", key, value);
 }
 
-/// Which chart: by its name, or by the [chart] table of a file, which then stands in for FILE.
-ChartKind choose(ChartArguments& arguments) {
+constexpr std::string_view all = "all";
+
+/// Which chart: by its name, or by the [chart] table of a file, which then stands in for FILE;
+/// absent: a set of charts.
+std::optional<ChartKind> choose(ChartArguments& arguments) {
+  const auto no_second_file = [&] {
+    if (!arguments.file.empty())
+      throw BadInput({fmt::format("repose chart {} takes no second file", arguments.what)});
+  };
+  if (arguments.what == all) {
+    no_second_file();
+    return {};
+  }
   const auto named = std::find(chart_names.begin(), chart_names.end(), arguments.what);
   if (named != chart_names.end()) return static_cast<ChartKind>(named - chart_names.begin());
   if (!arguments.what.ends_with(".toml")) {
-    const std::string near = closest(arguments.what, {chart_names.begin(), chart_names.end()});
-    throw BadInput(
-        {fmt::format("there is no chart '{}': {}, or a .toml file with a [chart] table{}",
-                     arguments.what, fmt::join(chart_names, ", "),
-                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
+    std::vector<std::string_view> names(chart_names.begin(), chart_names.end());
+    names.push_back(all);
+    const std::string near = closest(arguments.what, names);
+    throw BadInput({fmt::format(
+        "there is no chart '{}': {}, or a .toml file with a [chart] table{}", arguments.what,
+        fmt::join(names, ", "), near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
   }
-  if (!arguments.file.empty())
-    throw BadInput({fmt::format("repose chart {} takes no second file", arguments.what)});
+  no_second_file();
+  arguments.file = arguments.what;
   InputFile input = InputFile::read(arguments.what, arguments.common.sets);
+  if (is_chart_set(input)) return {};
   const ChartTable chart = read_chart(input);
   if (!chart.kind)
     throw BadInput({fmt::format("{}: [chart] needs kind = \"{}\"", to_string(input.origin("chart")),
                                 fmt::join(chart_names, "\" or \""))});
-  // a chart that needs no file leaves nothing but the table in its input.toml
-  if (*chart.kind != ChartKind::point &&
-      (*chart.kind == ChartKind::mpm || input.root().contains("fit")))
-    arguments.file = arguments.what;
-  if (chart.evaluations && !arguments.evaluations) arguments.evaluations = *chart.evaluations;
-  if (chart.seed && arguments.common.seed == 0)
-    arguments.common.seed = static_cast<std::uint64_t>(*chart.seed);
   return *chart.kind;
 }
 
 ExitCode run_chart(ChartArguments arguments) {
-  const ChartKind kind = choose(arguments);
-  const std::string_view name = chart_names[static_cast<std::size_t>(kind)];
+  const std::optional<ChartKind> kind = choose(arguments);
   CommonOptions& common = arguments.common;
   for (std::size_t i = 0; i < list_options.size(); ++i) {
     if (arguments.lists[i].empty()) continue;
@@ -87,20 +93,31 @@ ExitCode run_chart(ChartArguments arguments) {
       throw BadInput({fmt::format("--{} belongs to repose chart mpm", list_options[i].name)});
     common.sets.push_back(override_of(list_options[i], arguments.lists[i]));
   }
-  if (kind == ChartKind::mpm) return chart_mpm(common, arguments.file, arguments.quick);
-  for (const auto& [given, option] :
-       {std::pair{arguments.quick, "--quick"}, {common.resume, "--resume"}})
-    if (given) throw BadInput({fmt::format("{} belongs to repose chart mpm", option)});
-  if (arguments.file.empty() && arguments.what == name && !common.sets.empty())
-    throw BadInput({"--set changes the keys of a fit file: repose chart fit FIT.toml"});
-  if (kind == ChartKind::fit)
-    return chart_fit(common, arguments.file, arguments.evaluations.value_or(2000));
-  if (!arguments.file.empty())
-    throw BadInput({"repose chart point takes no file; it charts its own six paths"});
-  return chart_point(common);
+  if (!kind) return chart_set(common, arguments.file, arguments.quick);
+  if (arguments.evaluations) {
+    if (kind != ChartKind::fit) throw BadInput({"--evaluations belongs to repose chart fit"});
+    common.sets.push_back(fmt::format("chart.evaluations={}", *arguments.evaluations));
+  }
+  switch (*kind) {
+    case ChartKind::mpm:
+      return told(chart_mpm(common, arguments.file, arguments.quick), common);
+    case ChartKind::fit:
+      return told(chart_fit(common, arguments.file, arguments.quick), common);
+    case ChartKind::point:
+      break;
+  }
+  if (!arguments.file.empty() && arguments.file != arguments.what)
+    throw BadInput({"repose chart point takes no file; it charts its own paths"});
+  return told(chart_point(common, arguments.file, arguments.quick), common);
 }
 
 }  // namespace
+
+ExitCode told(const ChartEnd& end, const CommonOptions& options) {
+  if (end.kept && !options.quiet && !options.json)
+    fmt::print("finished already from the same input; without --resume it is made again\n");
+  return end.code;
+}
 
 Command add_chart(CLI::App& root) {
   CLI::App* verb = root.add_subcommand("chart", "Speed against accuracy");
@@ -111,18 +128,23 @@ Command add_chart(CLI::App& root) {
       "  repose chart fit FIT.toml   the same on a fit of your own\n"
       "  repose chart mpm            transfers and steps: does the run-out depend on the step?\n"
       "  repose chart mpm SCENE.toml --transfers apic,relaxed --cells 0.0125 --courants 0.4,0.1\n"
-      "  repose chart FILE.toml      what the file's [chart] table says; every chart leaves such\n"
-      "                              a file, input.toml, beside its results\n"
+      "  repose chart FILE.toml      what the file's [chart] table says, or every [[chart]] of "
+      "it;\n"
+      "                              every chart leaves such a file, input.toml, beside its "
+      "results\n"
+      "  repose chart all            every chart and one page of them all, in results/gallery\n"
+      "  repose chart all --resume   the same without repeating what is done\n"
       "Writes chart.csv and chart.svg to results/chart_WHAT, and beside them error_map.csv and\n"
       "error_map.svg (point), table.csv (fit) or history.csv, history.svg and cost.svg (mpm).");
   const auto arguments = std::make_shared<ChartArguments>();
   CommonOptions& options = arguments->common;
-  verb->add_option("WHAT", arguments->what, "point, fit, mpm, or a file with a [chart] table")
+  verb->add_option("WHAT", arguments->what, "point, fit, mpm, all, or a file with a [chart] table")
       ->required();
   verb->add_option("FILE", arguments->file,
-                   "fit: a fit file (default: a twin experiment); mpm: a scene (default: the flat "
-                   "column)");
-  verb->add_option("-o,--output", options.output, "Result folder (default: results/chart_WHAT)")
+                   "fit: a fit file (default: a twin experiment); mpm: a scene or the name of a "
+                   "shipped one (default: flat_mu_i)");
+  verb->add_option("-o,--output", options.output,
+                   "Result folder (default: results/chart_WHAT, or results/gallery)")
       ->type_name("DIR");
   verb->add_option("--evaluations", arguments->evaluations,
                    "fit: most trials of one algorithm (default: 2000)")
@@ -135,14 +157,15 @@ Command add_chart(CLI::App& root) {
     verb->add_option(fmt::format("--{}", list_options[i].name), arguments->lists[i],
                      fmt::format("mpm: {}", list_options[i].doc))
         ->type_name("A,B,...");
-  verb->add_flag("--quick", arguments->quick, "mpm: coarse cells and two steps, in seconds");
+  verb->add_flag("--quick", arguments->quick, "Coarse and few: each chart in seconds");
   verb->add_option("--threads", options.threads,
                    "mpm: threads of each run (default: 1, so that seconds are those of one core)")
       ->type_name("N")
       ->check(CLI::Range(0, 4096).description(""));
-  verb->add_flag("--resume", options.resume,
-                 "mpm: continue an interrupted run from its checkpoint; finished ones of the "
-                 "same input are never repeated");
+  verb->add_flag(
+      "--resume", options.resume,
+      "Keep charts that are finished from the same input; mpm: go on with an interrupted "
+      "run from its checkpoint (finished runs are never repeated)");
   add_set(*verb, options);
   add_quiet(*verb, options);
   return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common),

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
+#include "app/finished_result.hpp"
 #include "app/interrupt.hpp"
 #include "app/plot/figure.hpp"
 #include "app/plot/gnuplot.hpp"
@@ -162,20 +163,31 @@ Figure figure_of(const std::vector<Run>& runs, const std::string& task, double f
 
 }  // namespace
 
-ExitCode chart_fit(const CommonOptions& options, const std::string& file, long evaluations) {
+ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool quick) {
   const ResultFolder folder(options.output.empty() ? ResultFolder::default_path("chart_fit")
                                                    : std::filesystem::path(options.output));
-  Task task = file.empty()
-                  ? twin_task()
-                  : task_of(read_fit(file, options.sets, options.seed, folder.path() / "runs"));
-  folder.remove_old_outputs();
+  InputFile given = file.empty() ? InputFile::parse("", "chart", options.sets)
+                                 : InputFile::read(file, options.sets);
+  const ChartTable chart = read_chart(given);
+  // a chart of the twin leaves nothing but the table in its input.toml
+  const bool twin = file.empty() || !given.root().contains("fit");
+  if (!twin)  // read_fit() looks at the other tables
+    for (const auto& [key, node] : given.root()) given.expect("", key.str());
+  given.throw_if_bad();
+  const std::uint64_t seed =
+      options.seed != 0 ? options.seed : static_cast<std::uint64_t>(chart.seed.value_or(0));
   calibration::OptimiseOptions settings;
-  settings.max_evaluations = evaluations;
+  settings.max_evaluations = chart.evaluations.value_or(quick || chart.quick ? 200 : 2000);
   settings.x_tolerance = 1e-12;
-  if (options.seed != 0) settings.seed = options.seed;
-  folder.write_file("input.toml",
-                    fmt::format("# The input of this result, by repose {}.\n{}{}", version_string,
-                                task.input, chart_text(evaluations, settings.seed)));
+  if (seed != 0) settings.seed = seed;
+  Task task =
+      twin ? twin_task() : task_of(read_fit(file, options.sets, seed, folder.path() / "runs"));
+  const std::string input =
+      fmt::format("# The input of this result, by repose {}.\n{}{}", version_string, task.input,
+                  chart_text(settings.max_evaluations, settings.seed));
+  if (options.resume && is_finished(folder, input)) return {ExitCode::done, true};
+  folder.remove_old_outputs();
+  folder.write_file("input.toml", input);
   const InterruptGuard interrupt;
   task.problem.interrupt_by([&] { return interrupt.requested(); });
   const double first = first_objective(task);
@@ -185,8 +197,8 @@ ExitCode chart_fit(const CommonOptions& options, const std::string& file, long e
     if (interrupt.requested()) break;
     runs.push_back(
         {algorithm, calibration::optimise(task.problem, algorithm.name, task.start, settings)});
+    folder.write_file("chart.csv", trace_csv(runs));
   }
-  folder.write_file("chart.csv", trace_csv(runs));
   folder.write_file("table.csv", table_csv(runs, first));
   try {
     figure_of(runs, task.name, first).render_svg(folder.file("chart.svg"));
@@ -194,10 +206,11 @@ ExitCode chart_fit(const CommonOptions& options, const std::string& file, long e
     fmt::print(stderr, "warning: no chart.svg: {}\n", error.what());
   }
   const std::string status = interrupt.requested() ? "interrupted" : "done";
-  nlohmann::ordered_json summary{{"repose", version_string}, {"kind", "chart_fit"},
-                                 {"status", status},         {"task", task.name},
-                                 {"seed", settings.seed},    {"evaluations", evaluations},
-                                 {"first_objective", first}, {"algorithms", runs.size()}};
+  nlohmann::ordered_json summary{
+      {"repose", version_string}, {"kind", "chart_fit"},
+      {"status", status},         {"task", task.name},
+      {"seed", settings.seed},    {"evaluations", settings.max_evaluations},
+      {"first_objective", first}, {"algorithms", runs.size()}};
   folder.write_file("summary.json", summary.dump(2) + "\n");
   if (options.json) fmt::print("{}\n", summary.dump());
   if (!options.quiet && !options.json)
@@ -205,7 +218,7 @@ ExitCode chart_fit(const CommonOptions& options, const std::string& file, long e
         "{}, objective over the first one and the trials it took:\n{}{}: chart.csv, "
         "table.csv, chart.svg\n",
         task.name, table_text(runs, first), folder.path().string());
-  return interrupt.requested() ? ExitCode::interrupted : ExitCode::done;
+  return {interrupt.requested() ? ExitCode::interrupted : ExitCode::done};
 }
 
 }  // namespace repose::app

@@ -5,10 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
+#include "app/finished_result.hpp"
+#include "app/interrupt.hpp"
 #include "app/plot/figure.hpp"
 #include "app/plot/gnuplot.hpp"
 #include "app/read_chart.hpp"
 #include "app/result_folder.hpp"
+#include "pointdriver/tangent_convergence.hpp"
 #include "pointdriver/work_precision.hpp"
 #include "repose_version.hpp"
 
@@ -18,20 +21,58 @@ namespace {
 using point::Method;
 using point::WorkPoint;
 
-constexpr double seconds_each = 0.02;  ///< repeats of one setting; the shortest counts
-
 struct Map {
   std::string name;
   std::vector<point::StepError> cells;
 };
 
 std::string work_csv(const std::vector<WorkPoint>& points) {
-  std::string text = "path,method,tolerance,substeps,error,wall_s,steps,rates,completed\n";
+  std::string text =
+      "path,method,tolerance,substeps,error,stress_error,state_error,wall_s,wall_lower_s,"
+      "wall_upper_s,repeats,steps,rates,completed\n";
   for (const WorkPoint& p : points)
-    text += fmt::format("\"{}\",{},{},{},{},{},{},{},{}\n", p.path, point::name_of(p.method),
-                        p.tolerance, p.substeps, p.error, p.seconds, p.steps, p.rates,
-                        p.completed ? 1 : 0);
+    text += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{}\n", p.path,
+                        point::name_of(p.method), p.tolerance, p.substeps, p.error(),
+                        p.stress_error, p.state_error, p.seconds, p.lower, p.upper, p.repeats,
+                        p.steps, p.rates, p.completed ? 1 : 0);
   return text;
+}
+
+std::string tangent_csv(const std::vector<point::TangentTest>& tests) {
+  std::string text = "law,h,remainder\n";
+  for (const point::TangentTest& test : tests)
+    for (const point::TangentPoint& p : test.points)
+      text += fmt::format("\"{}\",{:.6g},{:.6g}\n", test.name, p.h, p.remainder);
+  return text;
+}
+
+Figure tangent_figure(const std::vector<point::TangentTest>& tests) {
+  Figure figure("Convergence of the laws' tangents",
+                "remainder of Taylor's first order around one step; of second order where the "
+                "tangent is the derivative of the update");
+  figure.panel_width_px = 560.0;
+  figure.panel_height_px = 360.0;
+  Axes& axes = figure.add_axes();
+  axes.x = {"perturbation over the step", AxisScale::logarithmic};
+  axes.y = {"remainder over change", AxisScale::logarithmic};
+  axes.legend = Legend::right;
+  std::size_t colour = 0;
+  for (const point::TangentTest& test : tests) {
+    std::vector<double> h, remainder;
+    for (const point::TangentPoint& p : test.points)
+      if (p.remainder > 0.0) {
+        h.push_back(p.h);
+        remainder.push_back(p.remainder);
+      }
+    Style style;
+    style.colour = cycle_colour(colour++);
+    if (colour > 7) style.marker = Marker::circle;  // one more than colours tell apart
+    if (!h.empty())
+      axes.line(fmt::format("{}: {:.2f}", test.name, test.order), h, remainder, style);
+  }
+  const std::array ends{1e-5, 1e-1}, second{1e-12, 1e-4};
+  axes.dashed("second order", ends, second, {Colour::black, 1.2});
+  return figure;
 }
 
 std::string map_csv(const std::vector<Map>& maps) {
@@ -44,10 +85,11 @@ std::string map_csv(const std::vector<Map>& maps) {
 
 Figure work_figure(const std::vector<WorkPoint>& points) {
   Figure figure("Work and precision of the integrators",
-                "one path with 50 rows, in process; largest error in any row (p and q over p, "
-                "ε_{v} over its largest); "
-                "shortest of the repeats");
-  figure.columns = 2;
+                "one path with 50 rows, in process; largest error of stress and state in any row; "
+                "median of the repeats, bars: quartiles");
+  figure.columns = 3;
+  figure.panel_width_px = 330.0;
+  figure.panel_height_px = 250.0;
   std::vector<std::string> paths;
   for (const WorkPoint& p : points)
     if (paths.empty() || paths.back() != p.path) paths.push_back(p.path);
@@ -56,13 +98,14 @@ Figure work_figure(const std::vector<WorkPoint>& points) {
     axes.title = path;
     axes.x = {"error (relative)", AxisScale::logarithmic};
     axes.y = {"time (µs)", AxisScale::logarithmic};
+    axes.legend = figure.panels().size() == 3 ? Legend::right : Legend::none;
     std::size_t colour = 0;
     for (const Method method :
          {Method::adaptive, Method::cvode, Method::ida, Method::arkode, Method::implicit}) {
       std::vector<double> error, time;
       for (const WorkPoint& p : points)
-        if (p.path == path && p.method == method && p.completed && p.error > 0.0) {
-          error.push_back(p.error);
+        if (p.path == path && p.method == method && p.completed && p.error() > 0.0) {
+          error.push_back(p.error());
           time.push_back(1e6 * p.seconds);
         }
       Style style;
@@ -70,6 +113,13 @@ Figure work_figure(const std::vector<WorkPoint>& points) {
       style.marker = Marker::circle;
       style.marker_px = 5.0;
       if (!error.empty()) axes.line(std::string(point::name_of(method)), error, time, style);
+      style.marker.reset();
+      style.width_px = 1.0;
+      for (const WorkPoint& p : points) {
+        if (p.path != path || p.method != method || !p.completed || !(p.error() > 0.0)) continue;
+        const std::array at{p.error(), p.error()}, bar{1e6 * p.lower, 1e6 * p.upper};
+        axes.line("", at, bar, style);
+      }
     }
   }
   return figure;
@@ -91,13 +141,14 @@ Figure map_figure(const std::vector<Map>& maps) {
       z.push_back(c.error >= 0.0 ? std::log10(std::max(c.error, 1e-12)) : std::nan(""));
     }
     ScatterStyle style;
-    style.diameter = 200.0 * map.cells.back().eps_v / 40.0;
+    style.diameter = 200.0 * (map.cells.back().eps_v - map.cells.front().eps_v) /
+                     (2.0 * (std::sqrt(static_cast<double>(map.cells.size())) - 1.0));
     axes.scatter(x, y, z, Axis{"log_{10} error"}, style);
   }
   return figure;
 }
 
-std::vector<Map> error_maps() {
+std::vector<Map> error_maps(int cells) {
   const std::vector<point::WorkPath> paths = point::work_paths();
   const LawInfo& law = find_law(paths.front().law);
   const std::vector<double> theta = checked_parameters(paths.front().law);
@@ -110,7 +161,6 @@ std::vector<Map> error_maps() {
     return given;
   };
   constexpr double reach = 0.02;
-  constexpr int cells = 41;
   return {
       {"at yield, q = 0", point::step_error_map(law, theta, start(0.0, 0.0), reach, cells)},
       {"at yield, q/p = M/2", point::step_error_map(law, theta, start(0.444, 0.0), reach, cells)},
@@ -128,31 +178,53 @@ void draw(const Figure& figure, const std::filesystem::path& file) {
 
 }  // namespace
 
-ExitCode chart_point(const CommonOptions& options) {
+ChartEnd chart_point(const CommonOptions& options, const std::string& file, bool quick) {
   const ResultFolder folder(options.output.empty() ? ResultFolder::default_path("chart_point")
                                                    : std::filesystem::path(options.output));
+  InputFile given = file.empty() ? InputFile::parse("", "chart", options.sets)
+                                 : InputFile::read(file, options.sets);
+  quick = read_chart(given).quick || quick;
+  given.throw_if_bad();
+  const std::string input = fmt::format("# The input of this result, by repose {}.\n{}",
+                                        version_string, chart_text(ChartKind::point, quick));
+  if (options.resume && is_finished(folder, input)) return {ExitCode::done, true};
   folder.remove_old_outputs();
-  folder.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n{}",
-                                              version_string, chart_text(ChartKind::point)));
+  folder.write_file("input.toml", input);
+  const bool speak = !options.quiet && !options.json;
+  const point::WorkEffort effort{quick ? 0.0 : 0.02, quick ? 3 : 1};
+  const InterruptGuard interrupt;
   std::vector<WorkPoint> points;
   for (const point::WorkPath& path : point::work_paths()) {
-    const std::vector<WorkPoint> more = point::work_precision(path, seconds_each);
+    if (interrupt.requested()) break;
+    const std::vector<WorkPoint> more = point::work_precision(path, effort);
     points.insert(points.end(), more.begin(), more.end());
-    if (!options.quiet && !options.json) fmt::print("{}: {} settings\n", path.name, more.size());
+    folder.write_file("chart.csv", work_csv(points));
+    if (speak) fmt::print("{}: {} settings\n", path.name, more.size());
   }
-  const std::vector<Map> maps = error_maps();
-  folder.write_file("chart.csv", work_csv(points));
-  folder.write_file("error_map.csv", map_csv(maps));
-  draw(work_figure(points), folder.file("chart.svg"));
-  draw(map_figure(maps), folder.file("error_map.svg"));
   nlohmann::ordered_json summary{{"repose", version_string},
                                  {"kind", "chart_point"},
-                                 {"status", "done"},
+                                 {"status", interrupt.requested() ? "interrupted" : "done"},
+                                 {"quick", quick},
                                  {"settings", points.size()}};
+  if (!interrupt.requested()) {
+    const std::vector<Map> maps = error_maps(quick ? 11 : 41);
+    const std::vector<point::TangentTest> tangents = point::tangent_convergence();
+    folder.write_file("error_map.csv", map_csv(maps));
+    folder.write_file("tangent.csv", tangent_csv(tangents));
+    draw(work_figure(points), folder.file("chart.svg"));
+    draw(map_figure(maps), folder.file("error_map.svg"));
+    draw(tangent_figure(tangents), folder.file("tangent.svg"));
+    for (const point::TangentTest& test : tangents) {
+      summary["tangent_order"][test.name] = test.order;
+      if (speak) fmt::print("{}: its tangent is of order {:.2f}\n", test.name, test.order);
+    }
+  }
   folder.write_file("summary.json", summary.dump(2) + "\n");
-  if (!options.quiet)
-    fmt::print("{}: chart.csv, chart.svg, error_map.csv, error_map.svg\n", folder.path().string());
-  return ExitCode::done;
+  if (options.json) fmt::print("{}\n", summary.dump());
+  if (speak)
+    fmt::print("{}: chart.csv, chart.svg, error_map.csv, error_map.svg, tangent.csv, tangent.svg\n",
+               folder.path().string());
+  return {interrupt.requested() ? ExitCode::interrupted : ExitCode::done};
 }
 
 }  // namespace repose::app

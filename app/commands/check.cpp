@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/command.hpp"
+#include "app/commands/chart.hpp"
 #include "app/file_kind.hpp"
 #include "app/progress.hpp"
+#include "app/read_chart_set.hpp"
 #include "app/read_fit.hpp"
 #include "app/read_point_test.hpp"
 #include "app/read_scene.hpp"
@@ -117,8 +118,16 @@ ExitCode check_stability(InputFile& input, const CommonOptions& options) {
   return ExitCode::done;
 }
 
+ExitCode check_charts(const std::string& path, const CommonOptions& options) {
+  const std::vector<std::string> lines = check_chart_set(options, path);
+  if (!options.quiet)
+    fmt::print("{}: a sound set of charts\n  {}\n", path, fmt::join(lines, "\n  "));
+  return ExitCode::done;
+}
+
 ExitCode check_file(const std::string& path, const CommonOptions& options) {
   InputFile input = InputFile::read(path, options.sets);
+  if (is_chart_set(input)) return check_charts(path, options);
   switch (kind_of(input)) {
     case FileKind::scene:
       return check_scene(input, options);
@@ -141,7 +150,8 @@ Command add_check(CLI::App& root) {
       "Examples:\n"
       "  repose check data/scenes/flat_mu_i.toml\n"
       "  repose check data/scenes/flat_mu_i.toml --set grid.h=0.003125\n"
-      "  repose check data/experiments/weald_clay_undrained.toml");
+      "  repose check data/experiments/weald_clay_undrained.toml\n"
+      "  repose check data/charts/all.toml");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
   verb->add_option("FILE.toml", *file, "Input file")->type_name("")->required();

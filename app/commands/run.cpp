@@ -36,15 +36,15 @@ ExitCode run_accurately(const RunArguments& arguments) {
   const std::string& quantity = arguments.quantity;
   if (quantity.empty())
     throw BadInput(
-        {fmt::format("--accuracy needs --for, one of {}", fmt::join(quantity_names, ", "))});
-  const auto named = std::find(quantity_names.begin(), quantity_names.end(), quantity);
-  if (named == quantity_names.end()) {
-    const std::string near = closest(quantity, {quantity_names.begin(), quantity_names.end()});
+        {fmt::format("--accuracy needs --for, one of {}", fmt::join(advised_names, ", "))});
+  const auto named = std::find(advised_names.begin(), advised_names.end(), quantity);
+  if (named == advised_names.end()) {
+    const std::string near = closest(quantity, {advised_names.begin(), advised_names.end()});
     throw BadInput(
-        {fmt::format("--for {}: one of {} is needed{}", quantity, fmt::join(quantity_names, ", "),
+        {fmt::format("--for {}: one of {} is needed{}", quantity, fmt::join(advised_names, ", "),
                      near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
   }
-  request.quantity = static_cast<Quantity>(named - quantity_names.begin());
+  request.quantity = static_cast<Quantity>(named - advised_names.begin());
   const auto number = [](const char* name, double x, double upper, const char* meaning) {
     if (!(x > 0.0) || !(x <= upper))
       throw BadInput(
@@ -120,7 +120,7 @@ Command add_run(CLI::App& root) {
           "coarse and fine ones, and gives what they tend to with an error bar")
       ->type_name("E");
   verb->add_option("--for", arguments->quantity,
-                   fmt::format("Of what (with --accuracy): {}", fmt::join(quantity_names, ", ")))
+                   fmt::format("Of what (with --accuracy): {}", fmt::join(advised_names, ", ")))
       ->type_name("QUANTITY");
   verb->add_option("--budget", arguments->budget,
                    "CPU seconds that --accuracy may take; refuses beforehand what takes more")

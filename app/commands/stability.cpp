@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/command.hpp"
+#include "app/commands/chart.hpp"
+#include "app/finished_result.hpp"
+#include "app/interrupt.hpp"
 #include "app/run_record.hpp"
 #include "app/stability/part.hpp"
 #include "repose_version.hpp"
@@ -19,24 +21,15 @@ struct StabilityArguments {
   bool quick = false;
 };
 
-StabilityInput read(const StabilityArguments& arguments) {
-  // options are keys of the file; without one, of an empty [stability]
-  std::vector<std::string> sets = arguments.common.sets;
-  if (!arguments.parts.empty()) {
-    std::string list;
-    for (std::size_t from = 0; from <= arguments.parts.size();) {
-      const std::size_t to = std::min(arguments.parts.find(',', from), arguments.parts.size());
-      list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ",
-                          arguments.parts.substr(from, to - from));
-      from = to + 1;
-    }
-    sets.push_back(fmt::format("stability.parts=[{}]", list));
+/// stability.parts=["mu_i", "step"] of --parts mu_i,step: options are keys of the file.
+std::string parts_override(const std::string& parts) {
+  std::string list;
+  for (std::size_t from = 0; from <= parts.size();) {
+    const std::size_t to = std::min(parts.find(',', from), parts.size());
+    list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", parts.substr(from, to - from));
+    from = to + 1;
   }
-  if (arguments.quick) sets.emplace_back("stability.quick=true");
-  InputFile input = arguments.file.empty()
-                        ? InputFile::parse("[stability]\n", "stability.toml", sets)
-                        : InputFile::read(arguments.file, sets);
-  return read_stability(input);
+  return fmt::format("stability.parts=[{}]", list);
 }
 
 Json map_part(StabilityPart part, const StabilityInput& input, PartOutput& out) {
@@ -55,48 +48,105 @@ Json map_part(StabilityPart part, const StabilityInput& input, PartOutput& out) 
   return {};
 }
 
-ExitCode run_stability(const StabilityArguments& arguments) {
-  const CommonOptions& options = arguments.common;
-  const StabilityInput input = read(arguments);
-  const ResultFolder folder(options.output.empty() ? ResultFolder::default_path("stability")
-                                                   : std::filesystem::path(options.output));
-  folder.remove_old_outputs();
-  folder.write_file(
-      "input.toml",
-      stability_text(input, arguments.file.empty() ? fmt::format("By repose {}.", version_string)
-                                                   : origin_line(arguments.file, options)));
-  const Usage before = usage();
-  PartOutput out(folder, options.quiet || options.json);
-  Json parts;
-  for (const StabilityPart part : input.parts) {
+/// The figures of parts that an interrupted run on the same input had done; null if there are none.
+Json parts_done(const ResultFolder& folder, const std::string& input) {
+  if (text_of(folder.file("input.toml")) != input) return {};
+  const Json summary = Json::parse(text_of(folder.file("summary.json")), nullptr, false);
+  return summary.is_object() ? summary.value("parts", Json()) : Json();
+}
+
+class Maps {
+ public:
+  Maps(const CommonOptions& options, const std::string& file, bool quick)
+      : options_(options),
+        folder_(options.output.empty() ? ResultFolder::default_path("stability")
+                                       : std::filesystem::path(options.output)) {
+    std::vector<std::string> sets = options.sets;
+    if (quick) sets.emplace_back("stability.quick=true");
+    InputFile given = file.empty() ? InputFile::parse("[stability]\n", "stability.toml", sets)
+                                   : InputFile::read(file, sets);
+    input_ = read_stability(given);
+    text_ = stability_text(
+        input_, file.empty()
+                    ? fmt::format("By repose {}.", version_string)
+                    : fmt::format("{}, by repose {}.", origin_line(file, options), version_string));
+  }
+
+  ChartEnd run() {
+    if (options_.resume && is_finished(folder_, text_)) return {ExitCode::done, true};
+    if (options_.resume) parts_ = parts_done(folder_, text_);
+    if (parts_.is_null()) folder_.remove_old_outputs();
+    folder_.write_file("input.toml", text_);
+    const InterruptGuard interrupt;
+    for (const StabilityPart part : input_.parts) {
+      if (interrupt.requested()) break;
+      make(part);
+      write_summary("interrupted");
+    }
+    const bool done =
+        std::all_of(input_.parts.begin(), input_.parts.end(), [&](StabilityPart part) {
+          return parts_.contains(std::string(stability_names[static_cast<std::size_t>(part)]));
+        });
+    const Json summary = write_summary(done ? "done" : "interrupted");
+    if (options_.json)
+      fmt::print("{}\n", summary.dump());
+    else if (!options_.quiet)
+      fmt::print("{}: {}, summary.json\n", folder_.path().string(), fmt::join(files(), ", "));
+    return {done ? ExitCode::done : ExitCode::interrupted};
+  }
+
+ private:
+  void make(StabilityPart part) {
     const std::string name(stability_names[static_cast<std::size_t>(part)]);
+    if (parts_.contains(name)) return;
+    PartOutput out(folder_, options_.quiet || options_.json);
     const Usage start = usage();
+    Json figures;
     try {
-      parts[name] = map_part(part, input, out);
+      figures = map_part(part, input_, out);
     } catch (const InputError& error) {
       throw BadInput(
           {fmt::format("repose stability, {}: {}: {}", name, error.key(), error.what())});
     }
-    parts[name]["cpu_s"] = usage().cpu_s - start.cpu_s;
+    const Usage end = usage();
+    figures["cpu_s"] = end.cpu_s - start.cpu_s;
+    figures["wall_s"] = end.wall_s - start.wall_s;
+    figures["files"] = out.files();
+    parts_[name] = std::move(figures);
   }
-  const Usage after = usage();
-  const Json summary{{"repose", version_string},
-                     {"kind", "stability"},
-                     {"status", "done"},
-                     {"quick", input.quick},
-                     {"cpu_s", after.cpu_s - before.cpu_s},
-                     {"wall_s", after.wall_s - before.wall_s},
-                     {"files", out.files()},
-                     {"parts", parts}};
-  folder.write_file("summary.json", summary.dump(2) + "\n");
-  if (options.json)
-    fmt::print("{}\n", summary.dump());
-  else if (!options.quiet)
-    fmt::print("{}: {}, summary.json\n", folder.path().string(), fmt::join(out.files(), ", "));
-  return ExitCode::done;
-}
+
+  std::vector<std::string> files() const {
+    std::vector<std::string> list;
+    for (const auto& [name, figures] : parts_.items())
+      for (const auto& file : figures["files"]) list.push_back(file);
+    return list;
+  }
+
+  Json write_summary(const char* status) const {
+    double cpu_s = 0.0, wall_s = 0.0;
+    for (const auto& [name, figures] : parts_.items()) {
+      cpu_s += figures["cpu_s"].get<double>();
+      wall_s += figures["wall_s"].get<double>();
+    }
+    const Json summary{{"repose", version_string}, {"kind", "stability"}, {"status", status},
+                       {"quick", input_.quick},    {"cpu_s", cpu_s},      {"wall_s", wall_s},
+                       {"files", files()},         {"parts", parts_}};
+    folder_.write_file("summary.json", summary.dump(2) + "\n");
+    return summary;
+  }
+
+  const CommonOptions& options_;
+  ResultFolder folder_;
+  StabilityInput input_;
+  std::string text_;
+  Json parts_;
+};
 
 }  // namespace
+
+ChartEnd stability_maps(const CommonOptions& options, const std::string& file, bool quick) {
+  return Maps(options, file, quick).run();
+}
 
 Command add_stability(CLI::App& root) {
   CLI::App* verb = root.add_subcommand("stability", "Maps of where laws and methods fail");
@@ -108,6 +158,7 @@ Command add_stability(CLI::App& root) {
       "  repose stability                     all of it for the paper's laws\n"
       "  repose stability --quick             the same on coarse maps, in seconds\n"
       "  repose stability --parts mu_i,step\n"
+      "  repose stability --resume            go on after an interrupt, part by part\n"
       "  repose stability LAW.toml            the maps of the law of the file's [law] table\n"
       "Writes tables, pictures, summary.json and input.toml to results/stability.");
   const auto arguments = std::make_shared<StabilityArguments>();
@@ -119,10 +170,15 @@ Command add_stability(CLI::App& root) {
   verb->add_option("-o,--output", arguments->common.output,
                    "Result folder (default: results/stability)")
       ->type_name("DIR");
+  verb->add_flag("--resume", arguments->common.resume,
+                 "Keep the parts that are finished from the same input");
   add_set(*verb, arguments->common);
   add_quiet(*verb, arguments->common);
-  return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
-          [arguments] { return run_stability(*arguments); }};
+  return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common), [arguments] {
+            CommonOptions options = arguments->common;
+            if (!arguments->parts.empty()) options.sets.push_back(parts_override(arguments->parts));
+            return told(stability_maps(options, arguments->file, arguments->quick), options);
+          }};
 }
 
 }  // namespace repose::app

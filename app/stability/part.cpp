@@ -6,7 +6,7 @@
 
 #include "app/plot/gnuplot.hpp"
 #include "app/read_scene.hpp"
-#include "embedded_scene.hpp"
+#include "app/shipped_input.hpp"
 
 namespace repose::app {
 
@@ -39,8 +39,7 @@ std::vector<double> decades(double low, double high, int n) {
 }
 
 mpm::Scene paper_scene(std::string_view name, const std::vector<std::string>& sets) {
-  InputFile file = InputFile::parse(name == "flat_mcc" ? flat_mcc_scene : flat_mu_i_scene,
-                                    std::string(name) + ".toml", sets);
+  InputFile file = open_scene(std::string(name), sets);
   return read_scene(file).scene;
 }
 

@@ -7,13 +7,13 @@
 #include "app/read_law.hpp"
 #include "app/read_scene.hpp"
 #include "app/resolved_input.hpp"
-#include "embedded_scene.hpp"
+#include "app/shipped_input.hpp"
 
 namespace repose::app {
 namespace {
 
-LawSpec law_of(const char* scene, const char* name) {
-  InputFile file = InputFile::parse(scene, name);
+LawSpec law_of(const char* scene) {
+  InputFile file = open_scene(scene);
   return read_scene(file).scene.bodies.front().law;
 }
 
@@ -23,8 +23,8 @@ StabilityInput default_stability() {
   StabilityInput input;
   for (std::size_t k = 0; k < stability_names.size(); ++k)
     input.parts.push_back(static_cast<StabilityPart>(k));
-  input.clay = law_of(flat_mcc_scene, "flat_mcc.toml");
-  input.grains = law_of(flat_mu_i_scene, "flat_mu_i.toml");
+  input.clay = law_of("flat_mcc");
+  input.grains = law_of("flat_mu_i");
   return input;
 }
 

@@ -274,9 +274,10 @@ TEST_F(ChartMpm, ARunThatFailsIsARowAndAWarning) {
 
 TEST_F(ChartMpm, SaysWhatIsWrong) {
   const std::string scene = REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml";
-  EXPECT_EQ(complaint({"mmp"}),
-            "there is no chart 'mmp': point, fit, mpm, or a .toml file with a [chart] table; did "
-            "you mean 'mpm'?\n");
+  EXPECT_EQ(
+      complaint({"mmp"}),
+      "there is no chart 'mmp': point, fit, mpm, all, or a .toml file with a [chart] table; did "
+      "you mean 'mpm'?\n");
   EXPECT_EQ(complaint({"mpm", scene, "--transfers", "apic,flop"}),
             "--set chart.transfers=[\"apic\", \"flop\"]: chart.transfers[1] must be one of \"" +
                 fmt::format("{}", fmt::join(mpm::transfer_names, "\", \"")) +
@@ -297,7 +298,11 @@ TEST_F(ChartMpm, SaysWhatIsWrong) {
             std::string::npos)
       << error_;
   EXPECT_EQ(complaint({"point", "--cells", "0.1"}), "--cells belongs to repose chart mpm\n");
-  EXPECT_EQ(complaint({"fit", "--quick"}), "--quick belongs to repose chart mpm\n");
+  EXPECT_EQ(complaint({"point", "--evaluations", "5"}),
+            "--evaluations belongs to repose chart fit\n");
+  EXPECT_EQ(complaint({"mpm", "flat_mui"}),
+            "there is no scene 'flat_mui': flat_mu_i, flat_mu_i_soft, flat_newtonian, flat_mcc, "
+            "couette, inclined_layer, or a .toml file; did you mean 'flat_mu_i'?\n");
   EXPECT_EQ(complaint({scene}),
             scene + ":1:1: [chart] needs kind = \"point\" or \"fit\" or \"mpm\"\n");
   std::ofstream(base_ / "c.toml") << content_of(scene) << "[chart]\nkind = \"mpm\"\ncels = [0.1]\n";

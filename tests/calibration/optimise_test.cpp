@@ -37,9 +37,8 @@ TEST(Optimise, EveryLocalAlgorithmFindsTheTruthWithinItsEvaluations) {
     OptimiseOptions options;
     options.max_evaluations = 5000;
     const Optimum o = optimise(problem, a.name, z2(0.3, 0.6), options);
-    // Derivative-free ones stop at x_tolerance or where ½r² is round-off, r ~ 1e-8. NEWUOA_BOUND
-    // solves its bounded subproblem by MMA only roughly and stops early.
-    const double tolerance = a.name == "LN_NEWUOA_BOUND" ? 2e-4 : 2e-5;
+    // Derivative-free ones stop at x_tolerance or where ½r² is round-off, r ~ 1e-8.
+    const double tolerance = 2e-5;
     EXPECT_NEAR(problem.space().values(o.z)[0], 2.0, tolerance) << a.name << " " << o.why;
     EXPECT_NEAR(problem.space().values(o.z)[1], 1.3, tolerance) << a.name << " " << o.why;
   }

@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/chart.hpp"
+#include "app/finished_result.hpp"
+#include "app/interrupt.hpp"
+#include "app/read_chart.hpp"
+#include "app/read_chart_set.hpp"
+#include "app/report/write_report.hpp"
+#include "app/run_record.hpp"
+#include "app/shipped_input.hpp"
+#include "app/stability/read_stability.hpp"
+#include "repose_version.hpp"
+
+namespace repose::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// What became of a part.
+struct PartRecord {
+  std::string status;  ///< done | failed | interrupted
+  std::string reason;  ///< of a failure that left no result
+  bool kept = false;
+  double cpu_s = 0.0, wall_s = 0.0;
+  ExitCode code = ExitCode::done;
+};
+
+class Set {
+ public:
+  Set(const CommonOptions& options, const std::string& file, bool quick)
+      : options_(options),
+        quick_(quick),
+        folder_(options.output.empty() ? ResultFolder::default_path("gallery")
+                                       : fs::path(options.output)) {
+    InputFile input = file.empty() ? InputFile::parse(shipped_chart_set(), "all.toml", options.sets)
+                                   : InputFile::read(file, options.sets);
+    set_ = read_chart_set(input, fs::path(file).parent_path(), quick);
+    std::vector<std::string> problems;
+    for (const ChartPart& part : set_.parts) try {
+        const std::size_t runs = check(part);
+        lines_.push_back(fmt::format("{:<16} {}{}", part.name,
+                                     part_kinds[static_cast<std::size_t>(part.kind)],
+                                     runs > 0 ? fmt::format(", {} runs", runs) : ""));
+      } catch (const BadInput& error) {
+        for (const std::string& problem : error.problems())
+          problems.push_back(
+              fmt::format("{}, chart \"{}\": {}", to_string(part.origin), part.name, problem));
+      }
+    if (!problems.empty()) throw BadInput(std::move(problems));
+  }
+
+  const std::vector<std::string>& lines() const { return lines_; }
+
+  ExitCode run() {
+    const ResultFolder folder(folder_);
+    folder.remove_old_outputs();
+    folder.write_file("input.toml", fmt::format("# The charts of this folder, by repose {}.\n{}",
+                                                version_string, set_.text));
+    const InterruptGuard interrupt;
+    std::vector<fs::path> made;
+    for (const ChartPart& part : set_.parts) {
+      if (interrupt.requested()) break;
+      tell("[{}/{}] {}: {}", records_.size() + 1, set_.parts.size(), part.name, part.command());
+      const PartRecord record = carry_out(part);
+      records_.push_back(record);
+      tell("[{}/{}] {}: {}", records_.size(), set_.parts.size(), part.name,
+           record.kept ? "finished already"
+                       : fmt::format("{} after {:.1f} s of CPU{}", record.status, record.cpu_s,
+                                     record.reason.empty() ? "" : ": " + record.reason));
+      if (fs::exists(folder_ / part.name / "summary.json")) made.push_back(folder_ / part.name);
+      write_summary(folder, "running");
+      if (!made.empty()) write_report(made, folder_ / "report.html", "Charts");
+    }
+    return finish(folder, interrupt.requested());
+  }
+
+ private:
+  template <class... Args>
+  void tell(fmt::format_string<Args...> format, Args&&... args) const {
+    if (options_.quiet || options_.json) return;
+    fmt::print("{}\n", fmt::format(format, std::forward<Args>(args)...));
+    std::fflush(stdout);
+  }
+
+  CommonOptions options_of(const ChartPart& part) const {
+    CommonOptions options = options_;
+    options.output = (folder_ / part.name).string();
+    options.sets = part.sets;
+    return options;
+  }
+
+  /// Reads what the part will read, so that a mistake is found before anything has run. Returns how
+  /// many runs of a scene it takes.
+  std::size_t check(const ChartPart& part) const {
+    const CommonOptions options = options_of(part);
+    if (part.kind == PartKind::mpm) return check_chart_mpm(options, part.input, quick_);
+    InputFile input = part.input.empty() ? InputFile::parse("[stability]\n", "chart", part.sets)
+                                         : InputFile::read(part.input, part.sets);
+    if (part.kind == PartKind::stability) {
+      read_stability(input);
+      return 0;
+    }
+    for (const auto& [key, node] : input.root()) input.expect("", key.str());
+    read_chart(input);
+    input.throw_if_bad();
+    return 0;
+  }
+
+  ChartEnd make(const ChartPart& part, const CommonOptions& options) const {
+    switch (part.kind) {
+      case PartKind::point:
+        return chart_point(options, part.input, quick_);
+      case PartKind::fit:
+        return chart_fit(options, part.input, quick_);
+      case PartKind::mpm:
+        return chart_mpm(options, part.input, quick_);
+      case PartKind::stability:
+        return stability_maps(options, part.input, quick_);
+    }
+    return {};
+  }
+
+  PartRecord carry_out(const ChartPart& part) const {
+    const Usage before = usage();
+    PartRecord record;
+    const auto failed = [&](ExitCode code, const std::string& reason) {
+      record.code = code;
+      record.reason = reason;
+      fmt::print(stderr, "{}: {}\n", part.name, reason);
+    };
+    try {
+      const ChartEnd end = make(part, options_of(part));
+      record.code = end.code;
+      record.kept = end.kept;
+    } catch (const BadInput& error) {
+      failed(ExitCode::bad_input, error.what());
+    } catch (const IoError& error) {
+      failed(ExitCode::io_error, error.what());
+    } catch (const std::exception& error) {
+      failed(ExitCode::internal_error, error.what());
+    }
+    record.status = record.code == ExitCode::done          ? "done"
+                    : record.code == ExitCode::interrupted ? "interrupted"
+                                                           : "failed";
+    const Usage after = usage();
+    record.cpu_s = after.cpu_s - before.cpu_s;
+    record.wall_s = after.wall_s - before.wall_s;
+    return record;
+  }
+
+  Json write_summary(const ResultFolder& folder, const std::string& status) const {
+    Json parts = Json::array();
+    double cpu_s = 0.0, wall_s = 0.0;
+    for (std::size_t i = 0; i < records_.size(); ++i) {
+      const PartRecord& record = records_[i];
+      parts.push_back({{"name", set_.parts[i].name},
+                       {"status", record.status},
+                       {"kept", record.kept},
+                       {"command", set_.parts[i].command()},
+                       {"cpu_s", record.cpu_s},
+                       {"wall_s", record.wall_s}});
+      if (!record.reason.empty()) parts.back()["reason"] = record.reason;
+      cpu_s += record.cpu_s;
+      wall_s += record.wall_s;
+    }
+    const Json summary{
+        {"repose", version_string},    {"kind", "chart_set"}, {"status", status}, {"quick", quick_},
+        {"charts", set_.parts.size()}, {"cpu_s", cpu_s},      {"wall_s", wall_s}, {"parts", parts}};
+    folder.write_file("summary.json", summary.dump(2) + "\n");
+    return summary;
+  }
+
+  ExitCode finish(const ResultFolder& folder, bool interrupted) const {
+    ExitCode code = ExitCode::done;
+    std::size_t kept = 0, failed = 0;
+    for (const PartRecord& record : records_) {
+      kept += record.kept ? 1 : 0;
+      failed += record.status == "failed" ? 1 : 0;
+      if (code == ExitCode::done) code = record.code;
+    }
+    if (interrupted) code = ExitCode::interrupted;
+    const Json summary = write_summary(folder, interrupted  ? "interrupted"
+                                               : failed > 0 ? "failed"
+                                                            : "done");
+    if (options_.json) fmt::print("{}\n", summary.dump());
+    tell("{}: {} of {} charts, {} kept, {} failed, {:.0f} s of CPU; report.html shows them",
+         folder_.string(), records_.size(), set_.parts.size(), kept, failed,
+         summary["cpu_s"].get<double>());
+    if (interrupted && !options_.quiet && !options_.json)
+      fmt::print(stderr, "interrupted; the same command with --resume continues\n");
+    return code;
+  }
+
+  const CommonOptions& options_;
+  bool quick_;
+  fs::path folder_;
+  ChartSet set_;
+  std::vector<std::string> lines_;  ///< a part each: what it takes
+  std::vector<PartRecord> records_;
+};
+
+}  // namespace
+
+ExitCode chart_set(const CommonOptions& options, const std::string& file, bool quick) {
+  return Set(options, file, quick).run();
+}
+
+std::vector<std::string> check_chart_set(const CommonOptions& options, const std::string& file) {
+  return Set(options, file, false).lines();
+}
+
+}  // namespace repose::app

@@ -1,0 +1,295 @@
+// `repose chart all` and sets of charts: what a set says, that a second run repeats nothing, and
+// that a part that fails does not stop the others. Beside it the two axes that sets use: further
+// keys of the scene, and flows with closed forms.
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "app/command_line.hpp"
+#include "app/exact_flow.hpp"
+#include "app/finished_result.hpp"
+#include "app/mpm_errors.hpp"
+#include "app/read_chart_set.hpp"
+#include "app/read_scene.hpp"
+#include "app/shipped_input.hpp"
+#include "pointdriver/tangent_convergence.hpp"
+
+namespace repose::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Table = std::vector<std::map<std::string, std::string>>;
+
+/// The rows of a CSV table by column; quoted cells may hold commas.
+Table table_of(const fs::path& path) {
+  std::istringstream in(text_of(path));
+  const auto cells_of = [](const std::string& line) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line)
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    return cells;
+  };
+  std::string line;
+  std::getline(in, line);
+  const std::vector<std::string> names = cells_of(line);
+  Table table;
+  while (std::getline(in, line)) {
+    const std::vector<std::string> cells = cells_of(line);
+    EXPECT_EQ(cells.size(), names.size()) << path << ": " << line;
+    auto& row = table.emplace_back();
+    for (std::size_t i = 0; i < std::min(cells.size(), names.size()); ++i) row[names[i]] = cells[i];
+  }
+  return table;
+}
+
+/// Numbers that a column has, each finite.
+std::size_t finite_numbers(const Table& table, const std::string& column) {
+  std::size_t count = 0;
+  for (const auto& row : table) {
+    const std::string& cell = row.at(column);
+    if (cell.empty()) continue;
+    EXPECT_TRUE(std::isfinite(std::stod(cell))) << column << ": " << cell;
+    ++count;
+  }
+  return count;
+}
+
+class ChartSetTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "repose-set-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    base_ = name;
+  }
+  void TearDown() override { fs::remove_all(base_); }
+
+  int run(std::vector<std::string> words, const std::string& out) {
+    words.insert(words.begin(), {"repose", "chart"});
+    words.insert(words.end(), {"-o", (base_ / out).string(), "--quiet"});
+    std::vector<const char*> argv;
+    for (const std::string& word : words) argv.push_back(word.c_str());
+    testing::internal::CaptureStderr();
+    const int code = run_command_line(static_cast<int>(argv.size()), argv.data());
+    error_ = testing::internal::GetCapturedStderr();
+    return code;
+  }
+  nlohmann::json summary(const std::string& out) const {
+    return nlohmann::json::parse(text_of(base_ / out / "summary.json"));
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(base_ / name) << text;
+    return (base_ / name).string();
+  }
+
+  fs::path base_;
+  std::string error_;
+};
+
+TEST(ReadChartSet, TheShippedSetIsSoundAndQuickReplacesKeys) {
+  for (const bool quick : {false, true}) {
+    InputFile file = InputFile::parse(shipped_chart_set(), "all.toml");
+    ASSERT_TRUE(is_chart_set(file));
+    const ChartSet set = read_chart_set(file, "", quick);
+    ASSERT_GE(set.parts.size(), 12u);
+    EXPECT_EQ(set.parts[0].command(), "repose chart point");
+    EXPECT_EQ(set.parts[1].command(),
+              fmt::format("repose chart fit --set 'chart.evaluations={}'", quick ? 40 : 2000));
+    EXPECT_EQ(set.parts[2].name, "mu_i_transfers");
+    EXPECT_EQ(set.parts[2].input, "flat_mu_i");
+    // what it writes down makes the same set, with nothing left to replace
+    InputFile again = InputFile::parse(set.text, "input.toml");
+    const ChartSet same = read_chart_set(again, "", !quick);
+    ASSERT_EQ(same.parts.size(), set.parts.size());
+    for (std::size_t i = 0; i < set.parts.size(); ++i) {
+      EXPECT_EQ(same.parts[i].sets, set.parts[i].sets);
+      EXPECT_EQ(same.parts[i].command(), set.parts[i].command());
+      for (const std::string& one : set.parts[i].sets) EXPECT_EQ(one.find(".quick="), one.npos);
+    }
+  }
+}
+
+TEST_F(ChartSetTest, TheShippedSetCanBeMade) {
+  const std::string file = write("all.toml", std::string(shipped_chart_set()));
+  const std::array words{"repose", "check", file.c_str()};
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(run_command_line(3, words.data()), 0);
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("mu_i_transfers   mpm, "),
+            std::string::npos);
+}
+
+// The whole gallery in small: every part, its table and picture, the page, and nothing twice.
+TEST_F(ChartSetTest, EveryChartInSmallAndNothingTwice) {
+  ASSERT_EQ(run({"all", "--quick"}, "all"), 0) << error_;
+  const nlohmann::json first = summary("all");
+  EXPECT_EQ(first["status"], "done");
+  InputFile file = InputFile::parse(shipped_chart_set(), "all.toml");
+  const ChartSet set = read_chart_set(file, "", true);
+  ASSERT_EQ(first["parts"].size(), set.parts.size());
+  const std::string page = text_of(base_ / "all/report.html");
+  std::map<std::string, std::string> before;
+  for (const ChartPart& part : set.parts) {
+    const fs::path folder = base_ / "all" / part.name;
+    EXPECT_EQ(summary("all/" + part.name)["status"], "done") << part.name;
+    EXPECT_NE(page.find("\"label\":\"" + part.name + "\""), page.npos) << part.name;
+    before[part.name] = text_of(folder / "summary.json");
+    if (part.kind == PartKind::stability) {
+      for (const auto& made : summary("all/" + part.name)["files"])
+        EXPECT_GT(fs::file_size(folder / made.get<std::string>()), 0u) << made;
+      continue;
+    }
+    EXPECT_GT(fs::file_size(folder / "chart.svg"), 1000u) << part.name;
+    const Table chart = table_of(folder / "chart.csv");
+    ASSERT_FALSE(chart.empty()) << part.name;
+    const char* column = part.kind == PartKind::point ? "wall_s"
+                         : part.kind == PartKind::fit ? "objective"
+                                                      : "kinetic_J_per_m";
+    EXPECT_EQ(finite_numbers(chart, column), chart.size()) << part.name;
+    if (part.kind != PartKind::mpm || part.name == "mu_i_steps") continue;
+    const Table errors = table_of(folder / "errors.csv");
+    EXPECT_EQ(finite_numbers(errors, "kinetic_error"), errors.size()) << part.name;
+    EXPECT_EQ(finite_numbers(errors, "momentum_error"), errors.size()) << part.name;
+    EXPECT_EQ(finite_numbers(errors, "energy_error"), errors.size()) << part.name;
+    EXPECT_GT(errors.size(), 1u) << part.name;
+  }
+  const Table sleep = table_of(base_ / "all/mu_i_sleep/errors.csv");
+  ASSERT_EQ(sleep.size(), 6u);
+  EXPECT_EQ(sleep.front().at("step.sleep_speed"), "0.0");
+  EXPECT_EQ(sleep.back().at("step.sleep_speed"), "0.003");
+
+  ASSERT_EQ(run({"all", "--quick", "--resume"}, "all"), 0) << error_;
+  const nlohmann::json second = summary("all");
+  for (const auto& part : second["parts"]) EXPECT_EQ(part["kept"], true) << part["name"];
+  for (const auto& [name, text] : before)
+    EXPECT_EQ(text_of(base_ / "all" / name / "summary.json"), text) << name << " was made again";
+}
+
+// A step of 5 ms is three times h/c for cells of 25 mm: that chart fails, the one after it is made.
+TEST_F(ChartSetTest, AChartThatFailsIsToldAndTheOthersAreMade) {
+  const std::string file = write(
+      "set.toml",
+      "[[chart]]\nname = \"fails\"\nkind = \"mpm\"\ninput = \"flat_mu_i\"\ntransfers = [\"apic\"]\n"
+      "cells = [0.025]\ndts = [5e-3]\nset = [\"scene.end_time=0.6\"]\n"
+      "[[chart]]\nname = \"works\"\nkind = \"mpm\"\ninput = \"flat_mu_i\"\ntransfers = [\"apic\"]\n"
+      "cells = [0.05]\ncourants = [1.0]\nset = [\"scene.end_time=0.1\"]\n"
+      "vary = { \"step.sleep_speed\" = [0.0, 0.01], \"scene.gravity\" = [9.8, 4.9] }\n");
+  EXPECT_EQ(run({file}, "set"), 3) << "the failure of a run";
+  EXPECT_EQ(summary("set")["status"], "failed");
+  EXPECT_EQ(summary("set")["parts"][0]["status"], "failed");
+  EXPECT_EQ(summary("set")["parts"][1]["status"], "done");
+  // two keys are varied, each value with each
+  const Table chart = table_of(base_ / "set/works/chart.csv");
+  ASSERT_EQ(chart.size(), 4u);
+  EXPECT_EQ(chart[0].at("scene.gravity"), "9.8");
+  EXPECT_EQ(chart[3].at("scene.gravity"), "4.9");
+  EXPECT_EQ(chart[3].at("step.sleep_speed"), "0.01");
+  EXPECT_NE(chart[0].at("kinetic_J_per_m"), chart[3].at("kinetic_J_per_m"));
+  // once more: the failed one again, the other kept
+  EXPECT_EQ(run({file, "--resume"}, "set"), 3);
+  EXPECT_EQ(summary("set")["parts"][0]["kept"], false);
+  EXPECT_EQ(summary("set")["parts"][1]["kept"], true);
+  // its input.toml is such a set too
+  EXPECT_EQ(run({(base_ / "set/input.toml").string()}, "again"), 3);
+  EXPECT_EQ(summary("again")["parts"][1]["status"], "done");
+}
+
+TEST_F(ChartSetTest, SaysWhatIsWrongBeforeAnythingIsRun) {
+  const auto complaint = [&](const std::string& text) {
+    const std::string file = write("bad.toml", text);
+    EXPECT_EQ(run({file}, "bad"), 2) << error_;
+    EXPECT_FALSE(fs::exists(base_ / "bad"));
+    return error_;
+  };
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpmm\"\n").find("did you mean \"mpm\"?"),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(complaint("[[chart]]\nname = \"a\"\n").find("chart[0] needs kind"), std::string::npos)
+      << error_;
+  EXPECT_NE(complaint("[[chart]]\nkind = \"point\"\n[[chart]]\nkind = \"point\"\n")
+                .find("bad.toml:3:1: there are two charts called 'point'"),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\ncels = [0.1]\n")
+                .find("bad.toml:1:1, chart \"mpm\": --set chart.cels=[0.1]: unknown key 'cels' in "
+                      "[chart]; did you mean 'cells'?"),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\ninput = \"flat_mui\"\n")
+                .find("there is no scene 'flat_mui'"),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\nvary = { \"grid.h\" = [0.1] }\n")
+                .find("grid.h has a list of its own, cells"),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(complaint("[[chart]]\nkind = \"mpm\"\nexact = \"couette\"\n")
+                .find("the closed form of couette needs a newtonian fluid"),
+            std::string::npos)
+      << error_;
+  EXPECT_NE(complaint("[[chart]]\nkind = \"stability\"\nparts = [\"mui\"]\n").find("did you mean"),
+            std::string::npos)
+      << error_;
+}
+
+/// The scene of a flow, with rows as charts have them.
+mpm::Scene flow_scene(const char* name) {
+  InputFile file = open_scene(name);
+  mpm::Scene scene = read_scene(file).scene;
+  scene.series_interval = scene.end_time / 60.0;
+  return scene;
+}
+
+// The modes cancel the steady flow at t = 0. Late, the slowest mode is left: of Couette flow
+// (4/π²) e^{−π²νt/H²} of the momentum ½, at νt/H² = 0.5 0.58 % of it; of the layer 96/π⁴ e^{−t/τ}.
+TEST(ExactFlows, StartAtRestAndEndSteady) {
+  const mpm::Scene couette = flow_scene("couette");
+  const double dt = couette.series_interval, mass = 1000.0 * 0.125 * 0.1;
+  const auto momentum = exact_shares(ExactFlow::couette, couette, Quantity::momentum);
+  const auto kinetic = exact_shares(ExactFlow::couette, couette, Quantity::kinetic);
+  ASSERT_TRUE(momentum && kinetic);
+  ASSERT_EQ(momentum->size(), 61);
+  const double steady = 0.5 * mass * 0.2;
+  // 200 modes leave out Σ 4/(m²π²) over odd m > 200, about 2/(200 π²) = 1e-3
+  EXPECT_NEAR((*momentum)[0] / dt / steady, 0.0, 3e-3);
+  EXPECT_NEAR((*momentum)[60] / dt / steady,
+              1.0 - 8.0 / (M_PI * M_PI) * std::exp(-0.5 * M_PI * M_PI), 1e-9);
+  // ⟨u²⟩ = V²/3 in the end; the slowest mode takes (4/π²) e of V² from it
+  const double e = std::exp(-0.5 * M_PI * M_PI);
+  EXPECT_NEAR((*kinetic)[60] / dt / (0.5 * mass * 0.04),
+              1.0 / 3.0 - (4.0 * e - 2.0 * e * e) / (M_PI * M_PI), 1e-8);
+  EXPECT_FALSE(exact_shares(ExactFlow::couette, couette, Quantity::front));
+
+  const mpm::Scene layer = flow_scene("inclined_layer");
+  const auto down = exact_shares(ExactFlow::inclined_layer, layer, Quantity::momentum);
+  ASSERT_TRUE(down);
+  const double nu = 0.05, H = 0.1, U = 9.8 * std::sin(M_PI / 18.0) * H * H / nu;
+  EXPECT_NEAR((*down)[0] / layer.series_interval / (mass * U), 0.0, 1e-6);
+  const double slowest = std::exp(-M_PI * M_PI * nu * 0.25 / (4.0 * H * H));
+  EXPECT_NEAR((*down)[60] / layer.series_interval / (mass * U),
+              1.0 / 3.0 - 32.0 / std::pow(M_PI, 4) * slowest, 1e-6);
+  EXPECT_THROW(exact_shares(ExactFlow::couette, layer, Quantity::kinetic), InputError);
+}
+
+// A tangent that is the derivative of the update has a remainder of second order; one that is not
+// would show first order. Steps of 0.1 still feel the third order, by at most a tenth of it.
+TEST(TangentConvergence, IsOfSecondOrderForEveryLaw) {
+  const std::vector<point::TangentTest> tests = point::tangent_convergence();
+  EXPECT_EQ(tests.size(), all_laws().size());
+  for (const point::TangentTest& test : tests) EXPECT_NEAR(test.order, 2.0, 0.1) << test.name;
+}
+
+}  // namespace
+}  // namespace repose::app
