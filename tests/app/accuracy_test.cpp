@@ -11,28 +11,15 @@
 #include "app/accuracy_table.hpp"
 #include "app/command_line.hpp"
 #include "app/mpm_errors.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
-
 class Accuracy : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-accuracy-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    base_ = name;
-  }
-  void TearDown() override { fs::remove_all(base_); }
-
   int run(std::vector<std::string> words, const std::string& out) {
     words.insert(words.begin(), {"repose"});
     words.insert(words.end(), {"-o", (base_ / out).string()});
@@ -57,7 +44,8 @@ class Accuracy : public testing::Test {
   }
 
   const std::string scene_ = REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml";
-  fs::path base_;
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
   std::string error_, text_;
 };
 

@@ -12,19 +12,13 @@
 
 #include "app/command_line.hpp"
 #include "app/mpm_sweep.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
 
 namespace fs = std::filesystem;
 using Table = std::vector<std::map<std::string, std::string>>;
-
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 /// The rows of a CSV table by column.
 Table table_of(const fs::path& path) {
@@ -149,13 +143,6 @@ TEST(MpmSweep, LeavesOutTransfersThatTheSceneRefuses) {
 
 class ChartMpm : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-chart-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    base_ = name;
-  }
-  void TearDown() override { fs::remove_all(base_); }
-
   int run(std::vector<std::string> words, const std::string& out) {
     words.insert(words.begin(), {"repose"});
     words.insert(words.end(), {"-o", (base_ / out).string(), "--quiet"});
@@ -177,7 +164,8 @@ class ChartMpm : public testing::Test {
     return nlohmann::json::parse(content_of(base_ / out / "summary.json"));
   }
 
-  fs::path base_;
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
   std::string error_;
 };
 

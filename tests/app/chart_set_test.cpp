@@ -21,6 +21,7 @@
 #include "app/read_scene.hpp"
 #include "app/shipped_input.hpp"
 #include "pointdriver/tangent_convergence.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
@@ -70,13 +71,6 @@ std::size_t finite_numbers(const Table& table, const std::string& column) {
 
 class ChartSetTest : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-set-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    base_ = name;
-  }
-  void TearDown() override { fs::remove_all(base_); }
-
   int run(std::vector<std::string> words, const std::string& out) {
     words.insert(words.begin(), {"repose", "chart"});
     words.insert(words.end(), {"-o", (base_ / out).string(), "--quiet"});
@@ -95,7 +89,8 @@ class ChartSetTest : public testing::Test {
     return (base_ / name).string();
   }
 
-  fs::path base_;
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
   std::string error_;
 };
 

@@ -17,19 +17,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/scratch_folder.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 const std::string scenes = REPOSE_SOURCE_DIR "/data/scenes/";
-
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -45,13 +40,7 @@ struct Outcome {
 
 class CommandTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-command-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    base_ = name;
-    std::ofstream(base_ / "tiny.toml") << tiny;
-  }
-  void TearDown() override { fs::remove_all(base_); }
+  void SetUp() override { std::ofstream(base_ / "tiny.toml") << tiny; }
 
   /// Starts the command in base_, its outputs going to files there. Before that the child runs
   /// `prepare`, which may redirect them elsewhere or limit what it can do.
@@ -101,7 +90,8 @@ class CommandTest : public ::testing::Test {
       "[grid]\nh = 0.025\n"
       "[step]\ndt = 2e-5\n"
       "[output]\nseries_interval = 0.001\nframe_interval = 0.05\n";
-  fs::path base_;
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
 };
 
 TEST_F(CommandTest, HelpAndVersion) {

@@ -15,6 +15,7 @@
 #include "app/plot/gnuplot.hpp"
 #include "app/plot/heap_picture.hpp"
 #include "mpm/atomic_file.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
@@ -25,18 +26,15 @@ using Values = std::vector<double>;
 class FigureTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-figure-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
     try {
       run_gnuplot("");
     } catch (const PlotError& error) {
       GTEST_SKIP() << error.what();
     }
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
-  fs::path folder_;
+  const ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path();
 };
 
 using HeapPictureTest = FigureTest;
@@ -67,13 +65,6 @@ std::size_t count(std::string_view text, std::string_view piece) {
 }
 
 bool contains(std::string_view text, std::string_view piece) { return count(text, piece) > 0; }
-
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 /// The dots of a picture in the order drawn: a cloud or points with the marker `circle`.
 struct Dot {

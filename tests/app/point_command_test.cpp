@@ -10,6 +10,7 @@
 #include "app/command_line.hpp"
 #include "app/read_point_test.hpp"
 #include "calibration/optimise.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
@@ -81,25 +82,11 @@ TEST(ReadPointTest, says_what_is_wrong_and_where) {
 
 class PointCommand : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("repose_point_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
     return (folder_ / name).string();
   }
-  std::string read(const std::string& name) const {
-    std::ifstream in(folder_ / name);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
+  std::string read(const std::string& name) const { return content_of(folder_ / name); }
   int run(const std::string& file, const std::string& out,
           std::vector<std::string> sets = {}) const {
     std::vector<std::string> words{"repose", "point", file, "-o", (folder_ / out).string(),
@@ -112,7 +99,8 @@ class PointCommand : public testing::Test {
     for (const std::string& word : words) argv.push_back(word.c_str());
     return run_command_line(static_cast<int>(argv.size()), argv.data());
   }
-  fs::path folder_;
+  const ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path();
 };
 
 TEST_F(PointCommand, writes_its_files_and_the_resolved_input_gives_the_same_bits) {
@@ -191,8 +179,8 @@ TEST(CheckCommand, takes_point_tests_and_fits) {
 }
 
 TEST(ChartCommand, draws_the_point_driver) {
-  const fs::path folder = fs::path(testing::TempDir()) / "repose_chart_point";
-  fs::remove_all(folder);
+  const ScratchFolder scratch;
+  const fs::path& folder = scratch.path();
   const std::string out = folder.string();
   const char* const argv[] = {"repose", "chart", "point", "--quiet", "-o", out.c_str()};
   ASSERT_EQ(run_command_line(6, argv), 0);
@@ -200,14 +188,13 @@ TEST(ChartCommand, draws_the_point_driver) {
     EXPECT_GT(fs::file_size(folder / name), 1000u) << name;
   const toml::table input = toml::parse_file((folder / "input.toml").string());
   EXPECT_EQ(input["chart"]["kind"].value<std::string>(), "point");
-  fs::remove_all(folder);
 }
 
 // A short run of every algorithm: each has a trace that only ever falls, and the table says of it
 // what the trace says.
 TEST(ChartCommand, draws_every_algorithm_of_a_fit) {
-  const fs::path folder = fs::path(testing::TempDir()) / "repose_chart_fit";
-  fs::remove_all(folder);
+  const ScratchFolder scratch;
+  const fs::path& folder = scratch.path();
   const std::string out = folder.string();
   const char* const argv[] = {"repose",    "chart",  "fit", "--quiet",       "-o",
                               out.c_str(), "--seed", "7",   "--evaluations", "40"};
@@ -260,7 +247,6 @@ TEST(ChartCommand, draws_every_algorithm_of_a_fit) {
   };
   EXPECT_EQ(summary_of(folder), summary_of(again));
   fs::remove_all(again);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -9,16 +9,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/scratch_folder.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 /// "" if no Chromium is installed.
 std::string browser() {
@@ -33,13 +28,7 @@ std::string browser() {
 
 class ReportPageTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-page-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    base_ = name;
-    std::ofstream(base_ / "tiny.toml") << tiny;
-  }
-  void TearDown() override { fs::remove_all(base_); }
+  void SetUp() override { std::ofstream(base_ / "tiny.toml") << tiny; }
 
   /// A command line in base_; its outputs go to out_ and err_.
   int shell(const std::string& line) {
@@ -84,7 +73,8 @@ class ReportPageTest : public ::testing::Test {
       "[grid]\nh = 0.025\n"
       "[step]\ndt = 2e-5\n"
       "[output]\nseries_interval = 0.001\nframe_interval = 0.005\n";
-  fs::path base_;
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
   std::string out_, err_;
 };
 

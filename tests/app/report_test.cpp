@@ -19,6 +19,7 @@
 #include "app/report/thin_evenly.hpp"
 #include "app/result_folder.hpp"
 #include "mpm/frame_writer.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
@@ -214,12 +215,6 @@ TEST(ReportPage, NothingInAResultIsMarkup) {
 
 class ReadResultTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-report-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    base_ = name;
-  }
-  void TearDown() override { fs::remove_all(base_); }
   void write(const fs::path& name, std::string_view text) const {
     fs::create_directories((base_ / name).parent_path());
     std::ofstream(base_ / name) << text;
@@ -233,7 +228,8 @@ class ReadResultTest : public ::testing::Test {
     }
     return "not refused";
   }
-  fs::path base_;
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
 };
 
 TEST_F(ReadResultTest, TakesWhatAFolderHolds) {

@@ -16,6 +16,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/scratch_folder.hpp"
+
 namespace repose::app {
 namespace {
 
@@ -23,25 +25,12 @@ namespace fs = std::filesystem;
 
 class ResultFolderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-results-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    base_ = name;
-  }
-  void TearDown() override { fs::remove_all(base_); }
-
-  fs::path base_;
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
 };
 
 using RowWriterTest = ResultFolderTest;
 using FullDiskTest = ResultFolderTest;
-
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
 
 void put(const fs::path& path) { std::ofstream(path) << path.filename().string(); }
 

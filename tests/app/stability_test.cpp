@@ -11,6 +11,7 @@
 
 #include "app/command_line.hpp"
 #include "app/stability/read_stability.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
@@ -31,17 +32,10 @@ Outcome command(std::vector<const char*> arguments) {
   return {exit, ::testing::internal::GetCapturedStderr()};
 }
 
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
-
 class Stability : public ::testing::Test {
  protected:
-  fs::path folder = fs::temp_directory_path() / ("repose_stability_" + std::to_string(::getpid()));
-  ~Stability() override { fs::remove_all(folder); }
+  const ScratchFolder scratch;
+  const fs::path folder = scratch.path();
 };
 
 TEST_F(Stability, QuickMapsOfMuI) {

@@ -10,6 +10,7 @@
 
 #include "app/collapse_simulator.hpp"
 #include "app/command_line.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
@@ -79,9 +80,8 @@ nlohmann::json fit(const fs::path& file, const fs::path& out) {
 }
 
 TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
-  const fs::path folder = fs::temp_directory_path() / "repose_collapse_fit_test";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const ScratchFolder scratch;
+  const fs::path& folder = scratch.path();
   std::ofstream(folder / "scene.toml") << scene_text;
   std::ofstream(folder / "fit.toml") << fit_text;
   CollapseExperiment e;
@@ -120,7 +120,6 @@ TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
   EXPECT_EQ(again["counts"]["this_session"]["scenes"]["simulated"], 0);
   EXPECT_EQ(again["parameters"], first["parameters"]);
   EXPECT_EQ(again["coarse"], first["coarse"]);
-  fs::remove_all(folder);
 }
 
 }  // namespace

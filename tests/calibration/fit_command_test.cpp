@@ -14,29 +14,19 @@
 #include "app/fit_record.hpp"
 #include "app/read_law.hpp"
 #include "calibration/twin.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 class FitCommand : public testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / fmt::format("repose_fit_{}_{}", info->name(), getpid());
-    fs::create_directories(folder_);
     write("cu.csv", undrained_table());
     write("fit.toml", fit_text());
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
@@ -100,12 +90,13 @@ starts = 6
     return "accepted";
   }
 
-  fs::path folder_;
+  const ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path();
 };
 
 TEST_F(FitCommand, FindsTheParametersAndWritesALawThatReadsBack) {
   ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("out")}), 0);
-  const auto report = nlohmann::json::parse(text_of(folder_ / "out/fit.json"));
+  const auto report = nlohmann::json::parse(content_of(folder_ / "out/fit.json"));
   // kPa with all digits: the table is exact to round-off, the path to 1e-8 per step
   EXPECT_NEAR(report["parameters"]["M"]["value"].get<double>(), 0.888, 1e-6);
   EXPECT_NEAR(report["parameters"]["kappa"]["value"].get<double>(), 0.062, 1e-6);
@@ -130,8 +121,8 @@ TEST_F(FitCommand, ShardsMergeToTheSameResult) {
       0);
   ASSERT_EQ(
       command({"fit", path("fit.toml"), "-o", path("merged"), "--merge", path("a"), path("b")}), 0);
-  const auto whole = nlohmann::json::parse(text_of(folder_ / "whole/fit.json"));
-  const auto merged = nlohmann::json::parse(text_of(folder_ / "merged/fit.json"));
+  const auto whole = nlohmann::json::parse(content_of(folder_ / "whole/fit.json"));
+  const auto merged = nlohmann::json::parse(content_of(folder_ / "merged/fit.json"));
   for (const char* key : {"parameters", "objective", "targets", "correlation", "optima",
                           "singular_values_of_scaled_jacobian", "fingerprint"})
     EXPECT_EQ(whole[key], merged[key]) << key;
@@ -140,15 +131,15 @@ TEST_F(FitCommand, ShardsMergeToTheSameResult) {
 TEST_F(FitCommand, ResumesAfterAKillInTheMiddleOfALine) {
   ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("whole")}), 0);
   // as a kill would leave it: two starts and a piece of the third
-  std::istringstream in(text_of(folder_ / "whole/starts.jsonl"));
+  std::istringstream in(content_of(folder_ / "whole/starts.jsonl"));
   std::string line, kept;
   for (int i = 0; i < 3 && std::getline(in, line); ++i) kept += line + "\n";
   std::getline(in, line);
   fs::create_directories(folder_ / "killed");
   write("killed/starts.jsonl", kept + line.substr(0, line.size() / 2));
   ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("killed"), "--resume"}), 0);
-  const auto whole = nlohmann::json::parse(text_of(folder_ / "whole/fit.json"));
-  const auto again = nlohmann::json::parse(text_of(folder_ / "killed/fit.json"));
+  const auto whole = nlohmann::json::parse(content_of(folder_ / "whole/fit.json"));
+  const auto again = nlohmann::json::parse(content_of(folder_ / "killed/fit.json"));
   EXPECT_EQ(whole["parameters"], again["parameters"]);
   EXPECT_EQ(again["counts"]["starts"], 6);
   EXPECT_LT(again["counts"]["this_session"]["gradients"].get<long>(),

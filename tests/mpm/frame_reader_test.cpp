@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "mpm/frame_writer.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::mpm {
 namespace {
@@ -19,13 +20,6 @@ namespace fs = std::filesystem;
 
 class FrameReaderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "repose-frames-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   fs::path written(double time) const {
     FrameView view;
     view.time_s = time;
@@ -38,7 +32,8 @@ class FrameReaderTest : public ::testing::Test {
     return FrameWriter(folder_, "sand").write(view);
   }
 
-  fs::path folder_;
+  const ScratchFolder scratch_;
+  const fs::path folder_ = scratch_.path();
   std::vector<double> x_{0.1, 0.2, 0.3}, y_{1.1, 1.2, 1.3}, p_{-7.0, 1e5, 1.0 / 3.0};
   std::vector<std::int32_t> body_{0, 1, 1};
 };

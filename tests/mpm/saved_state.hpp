@@ -13,31 +13,20 @@
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
-#include <unistd.h>
 
 #include "mpm/points.hpp"
 #include "mpm/simulation.hpp"
+#include "tests/scratch_folder.hpp"
 
 namespace repose::mpm {
 
 /// A file name of its own for this test, gone with the object.
 class ScratchFile {
  public:
-  ScratchFile() {
-    std::string name = (std::filesystem::temp_directory_path() / "repose-state-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder_ = name;
-  }
-  ~ScratchFile() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
-  std::filesystem::path path() const { return folder_ / "state.h5"; }
+  std::filesystem::path path() const { return folder_.path() / "state.h5"; }
 
  private:
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
 };
 
 /// Every data set of a checkpoint by name.
