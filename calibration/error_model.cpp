@@ -9,10 +9,12 @@ namespace {
 using Eigen::ArrayXd;
 using Eigen::VectorXd;
 
-/// What the model's constants weigh beside the bias that one pair of sizes shows, and beside one
-/// run more of a size.
-constexpr double model_biases = 1.0;
+/// How many pairs of sizes the model's bias weighs, and how many further runs of a size its
+/// scatter.
+constexpr double model_pairs = 1.0;
 constexpr double model_runs = 3.0;
+/// Pairs that seem to agree show at least so much of the model's bias.
+constexpr double least_shown = 0.1;
 /// Pairs of sizes that show a bias: closer ones show their irregularity, others are far from fine.
 constexpr double least_ratio = 1.4, largest_ratio = 4.5;
 /// x from which on higher powers count.
@@ -55,8 +57,7 @@ double Convergence::bias_at(double h) const {
   const auto noise = [&](const Resolution& level) {
     return squared(scatter_at(level.h)) / static_cast<double>(level.runs.size());
   };
-  double squares = model_biases * squared(model_.expected_bias(f.h / length_));
-  double count = model_biases;
+  double squares = 0.0, count = 0.0;
   for (const Resolution& c : levels_) {
     const double ratio = c.h / f.h;
     if (ratio < least_ratio || ratio > largest_ratio) continue;
@@ -67,7 +68,11 @@ double Convergence::bias_at(double h) const {
         (squared(x - 1.0) + squared(irregularity_at(c.h) * x) + squared(irregularity_at(f.h)));
     count += 1.0;
   }
-  return std::sqrt(squares / count) * std::pow(h / f.h, model_.order);
+  const double expected = model_.expected_bias(f.h / length_);
+  if (count == 0.0) return expected * std::pow(h / f.h, model_.order);
+  const double shown = std::max(std::sqrt(squares / count), least_shown * expected);
+  const double share = model_pairs / (model_pairs + count);
+  return std::pow(expected, share) * std::pow(shown, 1.0 - share) * std::pow(h / f.h, model_.order);
 }
 
 Convergence::Weighted Convergence::best_weights(const std::vector<Level>& levels) const {

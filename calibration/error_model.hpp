@@ -46,8 +46,8 @@ struct Level {
 ///     E² = B² (Σ a_k x_k)² + Σ a_k² s_k²,
 /// has a = E² M⁻¹ 1 and E² = 1/(1ᵀ M⁻¹ 1), M = B² x xᵀ + diag(s²): it is Richardson's extrapolation
 /// where the sizes err regularly, the finest run alone where they do not, and a mean of many runs
-/// where scatter rules. B² is the mean of the model's and of those that the pairs of the finest
-/// size f with a coarser one k (1.4 ≤ h_k/h_f ≤ 4.5) show,
+/// where scatter rules. B² is the geometric mean of the model's, which counts as one pair, and of
+/// the mean of what the pairs of the finest size f with a coarser one k (1.4 ≤ h_k/h_f ≤ 4.5) show,
 ///     (|u_k − u_f|² − σ_k²/n_k − σ_f²/n_f)/((x_k − 1)² + (irregularity_k x_k)² + irregularity_f²);
 /// σ is that of the model, scaled by the scatter seen. The error bar is caution·E.
 class Convergence {
