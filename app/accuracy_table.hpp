@@ -28,8 +28,8 @@ std::vector<Candidate> candidates_for(const mpm::Scene& scene, Quantity q, bool&
 mpm::Scene scene_with(mpm::Scene scene, const Candidate& candidate, double h, int k = 0);
 
 /// Cells to choose from, coarse to fine: the scene's own, doubled as long as they divide the box
-/// and every body is at least 4 of them across, and halved down to `most_points` points; below a
-/// quarter of the coarsest, two thirds of each as well.
+/// and every body is at least 4 of them across, and halved down to `most_points` points; between
+/// one and its half, four fifths and two thirds of it where they fit.
 std::vector<double> sizes_for(const mpm::Scene& scene, double most_points = 4e6);
 
 }  // namespace repose::app

@@ -142,7 +142,8 @@ std::string SweepReference::name(std::span<const SweepFamily> families) const {
 calibration::ShownErrors shown_errors(const SweepFamily& family, Quantity q,
                                       const SweepReference& reference, double bin) {
   const auto& value = reference.values[static_cast<std::size_t>(q)];
-  return calibration::shown_errors(family.levels(q, bin), value->value, length_of(family.scene()));
+  return calibration::shown_errors(family.levels(q, bin), value->value, value->error,
+                                   length_of(family.scene()));
 }
 
 }  // namespace repose::app

@@ -12,6 +12,7 @@
 #include "app/resolved_input.hpp"
 #include "app/result_folder.hpp"
 #include "app/run_record.hpp"
+#include "repose_version.hpp"
 
 namespace repose::app {
 namespace {
@@ -75,6 +76,12 @@ std::string refusal(mpm::Scene scene, mpm::Transfer transfer) {
     return error.what();
   }
   return "";
+}
+
+/// The text after its first line, which names the version: what else is the same is the same
+/// solver's, by the digest in the second.
+std::string_view after_version(std::string_view text) {
+  return text.substr(std::min(text.size(), text.find('\n')));
 }
 
 void read_result(SweepRun& run, const fs::path& folder) {
@@ -293,13 +300,15 @@ ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool resu
   RunRequest request;
   request.file = run.file;
   request.file.notes.clear();
-  request.input = resolved_input(run.file, "One of several runs of a scene.");
+  request.input = resolved_input(
+      run.file, fmt::format("One of several runs of a scene; solver {}.", solver_digest));
   request.folder = folder / run.scene().name;
   request.threads = threads;
   request.picture = false;
   request.quiet = true;
   const std::string there = noted_status(request.folder / "summary.json");
-  const bool same = text_of(request.folder / "input.toml") == request.input;
+  const std::string text = text_of(request.folder / "input.toml");
+  const bool same = !text.empty() && after_version(text) == after_version(request.input);
   if (!same || (there != "done" && there != "failed")) {
     request.resume =
         resume && same && there == "interrupted" && fs::exists(request.folder / "checkpoint.h5");

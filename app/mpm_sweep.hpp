@@ -92,8 +92,9 @@ std::optional<SweepChange> change_when_quartered(const SweepSeries& series);
 
 /// Runs it as `repose run` would, in folder/NAME. What lies there already is not repeated if it
 /// came to its end (or failed) from the same input (its text is compared, not a hash of it) by the
-/// same version of repose; with `resume`, an interrupted run goes on from its checkpoint. Returns
-/// interrupted if it was; a run that failed is kept as such. Errors: IoError.
+/// same solver (solver_digest of repose_version.hpp), be it of another version of repose; with
+/// `resume`, an interrupted run goes on from its checkpoint. Returns interrupted if it was; a run
+/// that failed is kept as such. Errors: IoError.
 ExitCode carry_out(SweepRun& run, const std::filesystem::path& folder, int threads, bool resume);
 
 }  // namespace repose::app

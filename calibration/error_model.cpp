@@ -2,29 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace repose::calibration {
 namespace {
 
+using Eigen::ArrayXd;
 using Eigen::VectorXd;
 
-/// What the model's constants weigh beside the bias that one size shows, and beside one run more of
-/// a size.
-constexpr double model_biases = 0.5;
+/// How many pairs of sizes the model's bias weighs, and how many further runs of a size its
+/// scatter.
+constexpr double model_pairs = 1.0;
 constexpr double model_runs = 3.0;
-/// Four fifths of a normal distribution lie within so many standard deviations.
-constexpr double four_fifths = 1.2816;
-/// Sizes closer than this are no pair to extrapolate from.
-constexpr double least_ratio = 1.9;
-
-/// The finest of the sizes, coarse to fine, that is coarse enough beside sizes[fine]; −1: none.
-template <class Sizes>
-std::ptrdiff_t partner(const Sizes& sizes, std::size_t fine) {
-  for (std::size_t k = fine; k-- > 0;)
-    if (sizes[k].h >= least_ratio * sizes[fine].h) return static_cast<std::ptrdiff_t>(k);
-  return -1;
-}
+/// Pairs that seem to agree show at least so much of the model's bias.
+constexpr double least_shown = 0.1;
+/// Pairs of sizes that show a bias: closer ones show their irregularity, others are far from fine.
+constexpr double least_ratio = 1.4, largest_ratio = 4.5;
+/// x from which on higher powers count.
+constexpr double onset = 0.05;
 
 double squared(double x) { return x * x; }
 
@@ -32,6 +26,9 @@ double squared(double x) { return x * x; }
 
 double ErrorModel::expected_bias(double x) const { return bias * std::pow(x, order); }
 double ErrorModel::expected_scatter(double x) const { return scatter * std::pow(x, scatter_order); }
+double ErrorModel::irregularity_at(double x) const {
+  return irregularity * std::sqrt(1.0 + squared(x / onset));
+}
 
 void Convergence::add(double h, VectorXd value) {
   const auto same = std::find_if(levels_.begin(), levels_.end(), [&](const Resolution& level) {
@@ -55,52 +52,100 @@ double Convergence::scatter_at(double h) const {
 }
 
 double Convergence::bias_at(double h) const {
-  double squares = model_biases * squared(model_.expected_bias(h / length_));
-  double count = model_biases;
-  for (std::size_t fine = 1; fine < levels_.size(); ++fine) {
-    const std::ptrdiff_t coarse = partner(levels_, fine);
-    if (fine + 2 < levels_.size() || coarse < 0) continue;  // the last two sizes count
-    const Resolution &c = levels_[static_cast<std::size_t>(coarse)], &f = levels_[fine];
-    const double noise = squared(scatter_at(f.h)) / static_cast<double>(f.runs.size()) +
-                         squared(scatter_at(c.h)) / static_cast<double>(c.runs.size());
+  if (levels_.empty()) return model_.expected_bias(h / length_);
+  const Resolution& f = levels_.back();
+  const auto noise = [&](const Resolution& level) {
+    return squared(scatter_at(level.h)) / static_cast<double>(level.runs.size());
+  };
+  double squares = 0.0, count = 0.0;
+  for (const Resolution& c : levels_) {
+    const double ratio = c.h / f.h;
+    if (ratio < least_ratio || ratio > largest_ratio) continue;
+    const double x = std::pow(ratio, model_.order);
     const double change = squared(relative_distance(c.mean(), f.mean()));
-    const double shown =
-        std::max(0.0, change - noise) * squared(richardson_weight(c.h, f.h, model_.order));
-    squares += shown * std::pow(h / f.h, 2.0 * model_.order);
+    squares +=
+        std::max(0.0, change - noise(c) - noise(f)) /
+        (squared(x - 1.0) + squared(irregularity_at(c.h) * x) + squared(irregularity_at(f.h)));
     count += 1.0;
   }
-  return std::sqrt(squares / count);
+  const double expected = model_.expected_bias(f.h / length_);
+  if (count == 0.0) return expected * std::pow(h / f.h, model_.order);
+  const double shown = std::max(std::sqrt(squares / count), least_shown * expected);
+  const double share = model_pairs / (model_pairs + count);
+  return std::pow(expected, share) * std::pow(shown, 1.0 - share) * std::pow(h / f.h, model_.order);
 }
 
-Convergence::Weighted Convergence::best_weight(const Level& coarse, const Level& fine) const {
-  const double B = squared(bias_at(fine.h));
-  const double w_1 = richardson_weight(coarse.h, fine.h, model_.order);
-  const double s_f = squared(scatter_at(fine.h)) / fine.runs;
-  const double s_c = squared(scatter_at(coarse.h)) / coarse.runs;
-  const double w = std::max(0.0, (B / w_1 - s_f) / (B / squared(w_1) + s_f + s_c));
-  const double E = B * squared(1.0 - w / w_1) + s_f * squared(1.0 + w) + s_c * squared(w);
-  return {w, std::sqrt(squared(model_.remainder) * B + squared(four_fifths) * E)};
+Convergence::Weighted Convergence::best_weights(const std::vector<Level>& levels) const {
+  const auto count = static_cast<Eigen::Index>(levels.size());
+  const double h_f = levels.back().h;
+  const double B = bias_at(h_f);
+  // M = B² x xᵀ + diag(s²); M⁻¹ 1 by Sherman and Morrison's formula
+  ArrayXd x(count), s_2(count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Level& level = levels[static_cast<std::size_t>(k)];
+    x[k] = std::pow(level.h / h_f, model_.order);
+    s_2[k] =
+        squared(irregularity_at(level.h) * B * x[k]) + squared(scatter_at(level.h)) / level.runs;
+  }
+  const double common = B * B * (x / s_2).sum() / (1.0 + B * B * (x.square() / s_2).sum());
+  const ArrayXd w = (1.0 - common * x) / s_2;
+  const double sum = w.sum();
+  return {(w / sum).matrix(), model_.caution / std::sqrt(sum)};
 }
 
 double Convergence::predicted_error(const std::vector<Level>& levels) const {
-  const std::ptrdiff_t coarse = partner(levels, levels.size() - 1);
-  if (coarse < 0) return std::numeric_limits<double>::infinity();
-  return best_weight(levels[static_cast<std::size_t>(coarse)], levels.back()).error;
+  return best_weights(levels).error;
 }
 
 Estimate Convergence::estimate() const {
-  const Resolution& f = levels_.back();
-  const std::ptrdiff_t coarse = partner(levels_, levels_.size() - 1);
-  if (coarse < 0) return {f.mean(), std::numeric_limits<double>::infinity(), 0.0};
-  const Resolution& c = levels_[static_cast<std::size_t>(coarse)];
-  const Weighted best =
-      best_weight({c.h, static_cast<int>(c.runs.size())}, {f.h, static_cast<int>(f.runs.size())});
-  const VectorXd u = f.mean();
-  return {u + best.weight * (u - c.mean()), best.error, best.weight};
+  std::vector<Level> levels;
+  for (const Resolution& level : levels_)
+    levels.push_back({level.h, static_cast<int>(level.runs.size())});
+  Weighted best = best_weights(levels);
+  VectorXd value = VectorXd::Zero(levels_.back().runs.front().size());
+  for (std::size_t k = 0; k < levels_.size(); ++k)
+    value += best.weights[static_cast<Eigen::Index>(k)] * levels_[k].mean();
+  return {std::move(value), best.error, std::move(best.weights)};
 }
 
+namespace {
+
+/// How far the sizes' errors over x = h/length are from their mean, over that mean; coarse sizes
+/// count less by as much as they are expected to be farther.
+double shown_irregularity(std::span<const Resolution> levels, const VectorXd& tends_to,
+                          double least, double length) {
+  std::vector<VectorXd> slopes;
+  std::vector<double> weights;
+  const double size = tends_to.lpNorm<1>();
+  for (const Resolution& level : levels) {
+    const VectorXd error = (level.mean() - tends_to) / size;
+    if (error.lpNorm<1>() < least) continue;
+    slopes.push_back(error * (length / level.h));
+    weights.push_back(1.0 / (1.0 + squared(level.h / length / onset)));
+  }
+  if (slopes.size() < 3) return std::nan("");
+  VectorXd mean = VectorXd::Zero(tends_to.size());
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 0; k < slopes.size(); ++k) {
+    mean += weights[k] * slopes[k];
+    sum += weights[k];
+  }
+  mean /= sum;
+  for (std::size_t k = 0; k < slopes.size(); ++k)
+    squares += weights[k] * squared((slopes[k] - mean).lpNorm<1>());
+  const double apart = std::sqrt(squares / static_cast<double>(slopes.size() - 1));
+  return apart / std::hypot(mean.lpNorm<1>(), apart);
+}
+
+bool is_halving(double coarsest, double h) {
+  const double halvings = std::log2(coarsest / h);
+  return std::abs(halvings - std::round(halvings)) < 1e-6;
+}
+
+}  // namespace
+
 ShownErrors shown_errors(std::span<const Resolution> levels, const VectorXd& tends_to,
-                         double length) {
+                         double uncertainty, double length) {
   ShownErrors shown;
   double biases = 0.0, scatters = 0.0, scattered = 0.0;
   for (const Resolution& level : levels) {
@@ -111,30 +156,25 @@ ShownErrors shown_errors(std::span<const Resolution> levels, const VectorXd& ten
   }
   shown.bias = std::sqrt(biases / static_cast<double>(levels.size()));
   shown.scatter = std::max(1e-4, scattered > 0.0 ? std::sqrt(scatters / scattered) : 0.0);
-  Convergence so_far({shown.bias, 1.0, 0.0, shown.scatter, 0.0}, length);
-  const std::size_t last = levels.size() > 2 ? levels.size() - 1 : levels.size();
-  for (std::size_t k = 0; k < last; ++k) {
-    for (const VectorXd& run : levels[k].runs) so_far.add(levels[k].h, run);
-    const Estimate estimate = so_far.estimate();
-    if (std::isfinite(estimate.error))
-      shown.remainders.push_back(relative_distance(estimate.value, tends_to) /
-                                 so_far.bias_at(levels[k].h));
-  }
+  const double least = 2.0 * std::max(uncertainty, shown.scatter);
+  shown.irregularity = shown_irregularity(levels, tends_to, least, length);
   return shown;
 }
 
 ErrorModel pooled_model(std::span<const ShownErrors> scenes) {
-  ErrorModel model;
-  double biases = 0.0, scatters = 0.0, remainders = 0.0, count = 0.0;
+  double biases = 0.0, scatters = 0.0, irregularities = 0.0, irregular = 0.0;
   for (const ShownErrors& scene : scenes) {
-    biases += squared(scene.bias);
+    biases += std::log(scene.bias);
     scatters += squared(scene.scatter);
-    for (const double r : scene.remainders) remainders += squared(r);
-    count += static_cast<double>(scene.remainders.size());
+    if (!std::isfinite(scene.irregularity)) continue;
+    irregularities += squared(scene.irregularity);
+    irregular += 1.0;
   }
-  model.bias = std::sqrt(biases / static_cast<double>(scenes.size()));
-  model.scatter = std::sqrt(scatters / static_cast<double>(scenes.size()));
-  model.remainder = four_fifths * std::sqrt(remainders / count);
+  const auto number = static_cast<double>(scenes.size());
+  ErrorModel model;
+  model.bias = std::exp(biases / number);
+  model.scatter = std::sqrt(scatters / number);
+  model.irregularity = std::sqrt(irregularities / irregular);
   return model;
 }
 
@@ -150,17 +190,13 @@ Plan cheapest_plan(const Convergence& so_far, const std::vector<double>& sizes,
     });
     return found == have.end() ? 0 : static_cast<int>(found->runs.size());
   };
-  const auto is_doubling = [&](double h) {
-    const double doublings = std::log2(sizes.front() / h);
-    return std::abs(doublings - std::round(doublings)) < 1e-6;
-  };
   for (std::size_t finest = 1; finest < sizes.size(); ++finest) {
     if (!have.empty() && sizes[finest] > 1.001 * have.back().h) continue;
     for (int runs = 1; runs <= most_runs; ++runs) {
       Plan plan;
       for (std::size_t k = 0; k <= finest; ++k) {
         const int there = made(sizes[k]);
-        if (there == 0 && k != finest && !is_doubling(sizes[k])) continue;
+        if (there == 0 && k != finest && !is_halving(sizes.front(), sizes[k])) continue;
         // a size that was passed by cannot be added, Convergence goes from coarse to fine
         if (there == 0 && !have.empty() && sizes[k] > have.back().h) continue;
         plan.levels.push_back({sizes[k], std::max(runs, there)});

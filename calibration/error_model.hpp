@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// How far runs with finite cells are from what they tend to: a model with few constants, and what
-/// the runs of a scene themselves say. It predicts the error bar of an estimate before it is made.
+/// the runs of a scene themselves say. It predicts the error of an estimate before it is made.
 
 #include <vector>
 
@@ -11,21 +11,25 @@ namespace repose::calibration {
 
 /// Of one quantity in one kind of scene. x = h/ℓ, ℓ a length of the scene; all are relative.
 struct ErrorModel {
-  double bias = 0.0;       ///< |u(h) − u*|₁/|u*|₁ is typically bias·x^order
-  double order = 1.0;      ///< p
-  double remainder = 0.0;  ///< error bar of an extrapolated value over the bias of its finest run
-  double scatter = 0.0;    ///< of one run, from a step to one close by: scatter·x^scatter_order
+  double bias = 0.0;          ///< |u(h) − u*|₁/|u*|₁ is typically bias·x^order
+  double order = 1.0;         ///< p
+  double irregularity = 0.0;  ///< how far one size's bias is off c·x^p, over it, with fine cells
+  double scatter = 0.0;       ///< of one run, from a step to one close by: scatter·x^scatter_order
   double scatter_order = 0.0;
+  double caution = 1.0;  ///< the error bar over the expected error E of an estimate
 
   double expected_bias(double x) const;
   double expected_scatter(double x) const;
+  /// With coarse cells what scales with higher powers of x counts as well:
+  /// irregularity·√(1 + (x/0.05)²).
+  double irregularity_at(double x) const;
 };
 
 /// An estimate of what the runs tend to.
 struct Estimate {
   Eigen::VectorXd value;
-  double error = 0.0;   ///< error bar, relative: holds in four of five cases
-  double weight = 0.0;  ///< value = u_f + weight (u_f − u_c)
+  double error = 0.0;       ///< error bar, relative
+  Eigen::VectorXd weights;  ///< of the sizes, coarse to fine; their sum is 1
 };
 
 /// Runs per cell size.
@@ -34,15 +38,18 @@ struct Level {
   int runs = 1;
 };
 
-/// The model together with the runs so far. Richardson's estimate û = u_f + w (u_f − u_c) from the
-/// finest cells f and the finest c at least 1.9 times as large would carry (1 + w) times the
-/// scatter of the fine runs and w times that of the coarse ones, so that w is shortened where
-/// scatter rules: with B the bias of the fine runs and w_1 = 1/(r^p − 1), r = h_c/h_f,
-///     E(w) = B² (1 − w/w_1)² + σ_f² (1 + w)²/n_f + σ_c² w²/n_c
-/// is least at w = (B²/w_1 − σ_f²/n_f)/(B²/w_1² + σ_f²/n_f + σ_c²/n_c), at least 0. The error bar
-/// is √((remainder B)² + 1.28² E). B is the root mean square of the model's bias and of those that
-/// the last two sizes show, w_1 |u_f − u_c|₁ less its scatter, each carried to the size in question
-/// as h^p; σ is that of the model, scaled by the scatter seen.
+/// The model together with the runs so far. With x_k = (h_k/h_f)^p, f the finest cells, the mean of
+/// n_k runs is taken to be
+///     u_k = u* + B x_k d + δ_k,   |δ_k|² ~ s_k² = (irregularity_k B x_k)² + σ_k²/n_k,
+/// one direction d for all sizes and δ_k independent. The estimate û = Σ a_k u_k, Σ a_k = 1, with
+/// the least expected square of the error,
+///     E² = B² (Σ a_k x_k)² + Σ a_k² s_k²,
+/// has a = E² M⁻¹ 1 and E² = 1/(1ᵀ M⁻¹ 1), M = B² x xᵀ + diag(s²): it is Richardson's extrapolation
+/// where the sizes err regularly, the finest run alone where they do not, and a mean of many runs
+/// where scatter rules. B² is the geometric mean of the model's, which counts as one pair, and of
+/// the mean of what the pairs of the finest size f with a coarser one k (1.4 ≤ h_k/h_f ≤ 4.5) show,
+///     (|u_k − u_f|² − σ_k²/n_k − σ_f²/n_f)/((x_k − 1)² + (irregularity_k x_k)² + irregularity_f²);
+/// σ is that of the model, scaled by the scatter seen. The error bar is caution·E.
 class Convergence {
  public:
   Convergence(const ErrorModel& model, double length) : model_(model), length_(length) {}
@@ -51,20 +58,21 @@ class Convergence {
   void add(double h, Eigen::VectorXd value);
   const std::vector<Resolution>& levels() const { return levels_; }
 
-  /// Error bar of the estimate that these levels, coarse to fine, would give; infinite where none
-  /// is 1.9 times as coarse as the finest.
+  /// Error bar of the estimate that these levels, coarse to fine, would give.
   double predicted_error(const std::vector<Level>& levels) const;
-  /// From the runs so far; its error is infinite if there is nothing to extrapolate from.
+  /// From the runs so far, of which there must be one.
   Estimate estimate() const;
   /// B: the relative error that runs with cells of h are expected to have, scatter aside.
   double bias_at(double h) const;
 
  private:
   struct Weighted {
-    double weight, error;
+    Eigen::VectorXd weights;
+    double error;
   };
-  Weighted best_weight(const Level& coarse, const Level& fine) const;
+  Weighted best_weights(const std::vector<Level>& levels) const;
   double scatter_at(double h) const;
+  double irregularity_at(double h) const { return model_.irregularity_at(h / length_); }
 
   ErrorModel model_;
   double length_;
@@ -72,18 +80,16 @@ class Convergence {
 };
 
 /// What one scene's levels show against what they tend to, for an ErrorModel of order 1: bias and
-/// scatter as root mean squares over the sizes, and the errors of the estimates that could be made
-/// on the way, over the expected bias (the finest of more than two sizes is left out: what it tends
-/// to was extrapolated from it). Scatter is at least 1e-4.
+/// scatter (at least 1e-4) as root mean squares over the sizes, and irregularity from sizes whose
+/// error is at least twice the uncertainty of u* and the scatter; NaN where these are fewer than
+/// three.
 struct ShownErrors {
-  double bias = 0.0, scatter = 0.0;
-  std::vector<double> remainders;
+  double bias = 0.0, irregularity = 0.0, scatter = 0.0;
 };
 ShownErrors shown_errors(std::span<const Resolution> levels, const Eigen::VectorXd& tends_to,
-                         double length);
+                         double uncertainty, double length);
 
-/// The model of several scenes: root mean squares; the remainder times 1.28, so that it bounds four
-/// of five cases.
+/// The model of several scenes: geometric mean of the biases, root mean squares of all else.
 ErrorModel pooled_model(std::span<const ShownErrors> scenes);
 
 /// What to run.
@@ -97,7 +103,7 @@ struct Plan {
 /// most accurate of those that cost at most `budget`, with its error above target; the cheapest of
 /// all where none does. sizes: cells to choose from, coarse to fine; seconds: of one run with each.
 /// A plan runs the sizes made so far, those from there on that are the coarsest over a power of 2,
-/// and a finest; all with the same number of runs, at most `most_runs`.
+/// and a finest; all with the same number of runs, at most `most_runs`. It has two sizes at least.
 Plan cheapest_plan(const Convergence& so_far, const std::vector<double>& sizes,
                    const std::vector<double>& seconds, double target, double budget,
                    int most_runs = 8);

@@ -19,6 +19,9 @@
 
 #include "tests/scratch_folder.hpp"
 
+using repose::content_of;
+using repose::ScratchFolder;
+
 namespace {
 
 namespace fs = std::filesystem;
