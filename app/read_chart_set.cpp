@@ -18,7 +18,7 @@ toml::table entry_as_asked(const toml::table& entry, bool quick) {
   asked.erase("quick");
   if (quick)
     for (const auto& [key, value] : *replaced)
-      value.visit([&](const auto& node) { asked.insert_or_assign(key, node); });
+      value.visit([&, &name = key](const auto& node) { asked.insert_or_assign(name, node); });
   return asked;
 }
 

@@ -39,7 +39,7 @@ void set_disc(Body& body, const Disc& disc) {
 
 void set_cylinder(Body& body, const Disc& disc, double base, double height) {
   body.disc = disc;
-  for (const std::size_t k : {0, 2}) {
+  for (const std::size_t k : {0U, 2U}) {
     const double centre = disc.centre[k / 2];
     body.origin[k] = centre == 0.0 ? 0.0 : centre - disc.radius;
     body.size[k] = centre == 0.0 ? disc.radius : 2.0 * disc.radius;
