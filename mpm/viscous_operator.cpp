@@ -220,10 +220,12 @@ void ViscousOperator::evaluate_law(std::size_t block) {
       D[1][k] = strain[1];
       D[3][k] = 0.5 * strain[2];
     }
-    Batch batch = body.points->batch(range);
-    batch.dt = 1.0;
-    batch.strain = {D[0], D[1], D[2], D[3]};
-    body.points->material->viscosity(batch, eta, thinning);
+    body.points->read(range, [&](PointSet& points, const Range& there) {
+      Batch batch = points.batch(there);
+      batch.dt = 1.0;
+      batch.strain = {D[0], D[1], D[2], D[3]};
+      points.material->viscosity(batch, eta, thinning);
+    });
     for (std::size_t k = 0; k < range.count; ++k) {
       body.data[range.begin + k].eta = eta[k];
       body.data[range.begin + k].thinning = thinning[k];

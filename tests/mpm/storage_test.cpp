@@ -139,6 +139,9 @@ TEST(Storage, GoesWithEveryPartOfTheMethod) {
   viscous.bodies[0].law = newtonian(10.0, 26000.0, 1.0, 1300.0);
   viscous.viscosity = Viscosity::implicit_solve;
   compare(viscous, "implicit");
+  viscous.bodies[0].law = mu_i(26000.0, "regularised");  // asks for the stress as well
+  viscous.bodies[0].law.values["r"] = 1.0;
+  compare(viscous, "implicit, regularised");
   Scene periodic = scene;
   periodic.left = periodic.right = {Wall::Kind::periodic};
   periodic.tilt_deg = 20.0;
