@@ -12,33 +12,13 @@
 
 #include "app/command_line.hpp"
 #include "app/mpm_sweep.hpp"
+#include "tests/app/csv_table.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Table = std::vector<std::map<std::string, std::string>>;
-
-/// The rows of a CSV table by column.
-Table table_of(const fs::path& path) {
-  std::istringstream in(content_of(path));
-  std::string line, cell;
-  std::getline(in, line);
-  std::vector<std::string> names;
-  for (std::istringstream head(line); std::getline(head, cell, ',');) names.push_back(cell);
-  Table table;
-  while (std::getline(in, line)) {
-    auto& row = table.emplace_back();
-    std::istringstream cells(line);
-    for (const std::string& name : names) {
-      cell.clear();
-      std::getline(cells, cell, ',');
-      row[name] = cell;
-    }
-  }
-  return table;
-}
 
 SweepRun run_with(double courant, std::vector<double> depth, double front) {
   SweepRun run;
