@@ -1,8 +1,10 @@
 #include "mpm/grid.hpp"
 
 #include <cmath>
-#include <numeric>
 #include <utility>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 namespace repose::mpm {
 
@@ -74,18 +76,20 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const PointsOf<dim>& points = bodies[b];
     keys[b].assign(points.slots(), 0);
-    for (std::size_t k = 0; k < points.slots(); ++k) {
-      if (points.id[k] < 0) continue;
-      Index cell{}, at{};
-      for (std::size_t a = 0; a < cell.size(); ++a) {
-        cell[a] = static_cast<int>(std::floor(points[Layout<dim>::x + a][k] * inv_h));
-        at[a] = block_of_cell(a, cell[a]);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.slots(), 4096), [&](const auto& r) {
+      for (std::size_t k = r.begin(); k != r.end(); ++k) {
+        if (points.id[k] < 0) continue;
+        Index cell{}, at{};
+        for (std::size_t a = 0; a < cell.size(); ++a) {
+          cell[a] = static_cast<int>(std::floor(points[Layout<dim>::x + a][k] * inv_h));
+          at[a] = block_of_cell(a, cell[a]);
+        }
+        keys[b][k] = static_cast<std::uint32_t>(table_index(at) * nodes) +
+                     static_cast<std::uint32_t>(place_in(at, cell));
       }
-      const std::size_t block = table_index(at);
-      keys[b][k] = static_cast<std::uint32_t>(block * nodes) +
-                   static_cast<std::uint32_t>(place_in(at, cell));
-      ++per_block[block];
-    }
+    });
+    for (std::size_t k = 0; k < points.slots(); ++k)
+      if (points.id[k] >= 0) ++per_block[keys[b][k] / nodes];
   }
 
   const std::vector<PointBlockOf<dim>> before = std::exchange(point_blocks, {});

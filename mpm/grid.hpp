@@ -172,7 +172,7 @@ class GridOf {
 
   /// Sorts the points of all bodies by block and cell (stable, so the result depends on positions
   /// and the former order only), and brings the blocks to life around them. A block of points keeps
-  /// what it knows of its rest.
+  /// what it knows of its rest. Works on the threads of the arena that it is called in.
   void sort(std::vector<PointsOf<dim>>& bodies);
 
   /// Takes over point blocks as sort() left them (from a checkpoint).

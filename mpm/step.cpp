@@ -47,7 +47,7 @@ void Simulation::Impl<dim>::sort_if_needed() {
     }
   }
   remove_outflow();
-  grid.sort(bodies);
+  arena.execute([&] { grid.sort(bodies); });
   wake_the_crowded();
   mark_sleepers();
   tiles_are_current = false;
