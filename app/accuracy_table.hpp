@@ -18,6 +18,9 @@ struct Candidate {
   calibration::ErrorModel model;
 };
 
+/// The orders that a quantity's errors follow, and the caution of its error bars; no constants.
+calibration::ErrorModel error_form(Quantity q);
+
 /// The measured ways to run scenes of these laws; of several bodies' laws, the largest constants
 /// count. `measured` becomes false where a law has none of its own: the largest of all laws then
 /// stand in.

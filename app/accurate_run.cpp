@@ -20,6 +20,7 @@ namespace repose::app {
 namespace {
 
 using calibration::Convergence;
+using calibration::Outcome;
 using calibration::Plan;
 using Json = nlohmann::ordered_json;
 
@@ -93,37 +94,28 @@ class AccurateRun {
     folder.write_file("input.toml", resolved_input(request_.file, request_.origin));
     Convergence so_far(candidate_.model, length_of(scene_));
     const InterruptGuard interrupt;
-    Plan plan = plan_;
-    bool met = false;
-    for (;;) {
-      if (so_far.levels().size() >= 2 && so_far.estimate().error <= request_.target) {
-        met = true;
-        break;
-      }
-      if (!runs_.empty())
-        plan = calibration::cheapest_plan(so_far, sizes_, costs_, request_.target, budget_);
-      if (so_far.levels().size() >= 2 && (plan.error > request_.target || plan.cost > budget_))
-        break;
-      std::size_t level = 0;
-      int made = 0;
-      for (; level < plan.levels.size(); ++level) {
-        made = level < so_far.levels().size() ? static_cast<int>(so_far.levels()[level].runs.size())
-                                              : 0;
-        if (made < plan.levels[level].runs) break;
-      }
-      SweepRun run =
-          run_of(request_.file, scene_with(scene_, candidate_, plan.levels[level].h, made));
-      if (interrupt.requested() ||
-          carry_out(run, request_.runs, request_.threads, request_.resume) == ExitCode::interrupted)
-        return stop_at_interrupt(folder);
-      runs_.push_back(run);
-      if (!run.done()) return stop_at_failure(folder, run);
-      if (!is_known(run)) return stop_at_failure(folder, run);
-      so_far.add(run.scene().h, shares_of(run, quantity_, sizes_.front()));
-      learn_cost(run);
-      tell_run(run);
-    }
-    return finish(folder, so_far, met);
+    bool interrupted = false;
+    const Outcome outcome = calibration::run_to_target(
+        so_far, sizes_, costs_, request_.target, budget_,
+        [&](const calibration::Level& next) -> std::optional<Eigen::VectorXd> {
+          SweepRun run = run_of(request_.file, scene_with(scene_, candidate_, next.h, next.runs));
+          interrupted = interrupt.requested() ||
+                        carry_out(run, request_.runs, request_.threads, request_.resume) ==
+                            ExitCode::interrupted;
+          if (interrupted) return {};
+          runs_.push_back(run);
+          if (!run.done()) return {};
+          Eigen::VectorXd value = shares_of(run, quantity_, sizes_.front());
+          if (!value.allFinite()) return {};
+          if (auto start = start_of(run, quantity_, sizes_.front()))
+            so_far.starts_from(std::move(*start));
+          learn_cost(run);
+          tell_run(run);
+          return value;
+        });
+    if (interrupted) return stop_at_interrupt(folder);
+    if (outcome == Outcome::stopped) return stop_at_failure(folder, runs_.back());
+    return finish(folder, so_far, outcome == Outcome::met);
   }
 
  private:
@@ -229,10 +221,6 @@ class AccurateRun {
            {"h_m", run.scene().h},
            {"courant", run.scene().courant},
            {"cpu_s", run.figure("cpu_s")}});
-  }
-
-  bool is_known(const SweepRun& run) const {
-    return shares_of(run, quantity_, sizes_.front()).allFinite();
   }
 
   /// What a run took tells better than a few steps what others will take. One factor for all: which

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/accuracy_table.hpp"
 #include "app/exact_flow.hpp"
 
 namespace repose::app {
@@ -143,7 +144,8 @@ calibration::ShownErrors shown_errors(const SweepFamily& family, Quantity q,
                                       const SweepReference& reference, double bin) {
   const auto& value = reference.values[static_cast<std::size_t>(q)];
   return calibration::shown_errors(family.levels(q, bin), value->value, value->error,
-                                   length_of(family.scene()));
+                                   length_of(family.scene()), error_form(q),
+                                   start_of(*family.runs.front(), q, bin));
 }
 
 }  // namespace repose::app

@@ -1,5 +1,6 @@
 #include "app/mpm_quantity.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace repose::app {
@@ -60,6 +61,40 @@ VectorXd shares_of(const SweepRun& run, Quantity q, double bin) {
   const std::vector<double>& rows = column->second;
   return run.scene().series_interval *
          Eigen::Map<const VectorXd>(rows.data(), static_cast<Index>(rows.size()));
+}
+
+namespace {
+
+/// Area of a disc left of x, measured from its centre.
+double disc_left_of(double x, double radius) {
+  if (radius == 0.0) return 0.0;
+  const double t = std::clamp(x, -radius, radius);
+  return t * std::sqrt(radius * radius - t * t) +
+         radius * radius * (std::asin(t / radius) + 0.5 * M_PI);
+}
+
+double area_left_of(const mpm::Body& body, double x) {
+  if (!body.disc) return body.size[1] * std::clamp(x - body.origin[0], 0.0, body.size[0]);
+  const double from_centre = x - body.disc->centre[0];
+  return disc_left_of(from_centre, body.disc->radius) - disc_left_of(from_centre, body.disc->hole);
+}
+
+}  // namespace
+
+std::optional<VectorXd> start_of(const SweepRun& run, Quantity q, double bin) {
+  const mpm::Scene& scene = run.scene();
+  if (!is_curve(q)) {
+    const auto column = run.series.find(column_of(q));
+    if (column == run.series.end() || column->second.empty()) return {};
+    return VectorXd::Constant(1, column->second.front());
+  }
+  if (q != Quantity::profile || scene.dimensions() == 3) return {};
+  VectorXd shares = VectorXd::Zero(static_cast<Index>(std::lround(scene.domain[0] / bin)));
+  for (const mpm::Body& body : scene.bodies)
+    for (Index i = 0; i < shares.size(); ++i)
+      shares[i] += area_left_of(body, static_cast<double>(i + 1) * bin) -
+                   area_left_of(body, static_cast<double>(i) * bin);
+  return shares;
 }
 
 QuantityCurve curve_of(const VectorXd& shares, Quantity q, const mpm::Scene& scene, double bin) {

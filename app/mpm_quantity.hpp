@@ -3,6 +3,7 @@
 /// What a collapse is asked for, and what one run says of it.
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 #include <Eigen/Core>
@@ -39,6 +40,9 @@ std::string_view unit_of(Quantity q);
 /// with any cells: a number as it is; a profile as the volumes [m³ per m] of columns of width `bin`
 /// [m]; energy and momentum times the time between rows [J s, kg m per m]. The run must be done.
 Eigen::VectorXd shares_of(const SweepRun& run, Quantity q, double bin);
+
+/// The shares at the start of a run; absent for curves over time, and for profiles in space.
+std::optional<Eigen::VectorXd> start_of(const SweepRun& run, Quantity q, double bin);
 
 /// Places and heights of the curve that shares are: x [m] and depth [m], or time [s] and energy
 /// [J/m] or momentum [kg m/s per m].

@@ -273,6 +273,7 @@ Json errors_answer(std::span<const SweepRun> runs, const SweepReference& referen
                       {"errors", errors},
                       {"orders", orders},
                       {"bias", shown.bias},
+                      {"motion", shown.motion},
                       {"irregularity", finite_or_null(shown.irregularity)},
                       {"scatter", shown.scatter}});
     }

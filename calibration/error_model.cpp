@@ -19,12 +19,20 @@ constexpr double least_shown = 0.1;
 constexpr double least_ratio = 1.4, largest_ratio = 4.5;
 /// x from which on higher powers count.
 constexpr double onset = 0.05;
+/// Motions are not told apart below.
+constexpr double least_motion = 0.02;
 
 double squared(double x) { return x * x; }
 
+double motion_of(const VectorXd& u, const VectorXd& start) {
+  return std::max(least_motion, relative_distance(start, u));
+}
+
 }  // namespace
 
-double ErrorModel::expected_bias(double x) const { return bias * std::pow(x, order); }
+double ErrorModel::expected_bias(double x, double scene_motion) const {
+  return bias * std::pow(std::max(least_motion, scene_motion), motion_order) * std::pow(x, order);
+}
 double ErrorModel::expected_scatter(double x) const { return scatter * std::pow(x, scatter_order); }
 double ErrorModel::irregularity_at(double x) const {
   return irregularity * std::sqrt(1.0 + squared(x / onset));
@@ -51,8 +59,13 @@ double Convergence::scatter_at(double h) const {
   return model_.expected_scatter(h / length_) * std::sqrt(squares / count);
 }
 
+double Convergence::motion() const {
+  if (!start_ || levels_.empty()) return model_.motion;
+  return motion_of(levels_.back().mean(), *start_);
+}
+
 double Convergence::bias_at(double h) const {
-  if (levels_.empty()) return model_.expected_bias(h / length_);
+  if (levels_.empty()) return model_.expected_bias(h / length_, motion());
   const Resolution& f = levels_.back();
   const auto noise = [&](const Resolution& level) {
     return squared(scatter_at(level.h)) / static_cast<double>(level.runs.size());
@@ -68,7 +81,7 @@ double Convergence::bias_at(double h) const {
         (squared(x - 1.0) + squared(irregularity_at(c.h) * x) + squared(irregularity_at(f.h)));
     count += 1.0;
   }
-  const double expected = model_.expected_bias(f.h / length_);
+  const double expected = model_.expected_bias(f.h / length_, motion());
   if (count == 0.0) return expected * std::pow(h / f.h, model_.order);
   const double shown = std::max(std::sqrt(squares / count), least_shown * expected);
   const double share = model_pairs / (model_pairs + count);
@@ -110,17 +123,17 @@ Estimate Convergence::estimate() const {
 
 namespace {
 
-/// How far the sizes' errors over x = h/length are from their mean, over that mean; coarse sizes
-/// count less by as much as they are expected to be farther.
+/// How far the sizes' errors over x^order, x = h/length, are from their mean, over that mean;
+/// coarse sizes count less by as much as they are expected to be farther.
 double shown_irregularity(std::span<const Resolution> levels, const VectorXd& tends_to,
-                          double least, double length) {
+                          double least, double length, double order) {
   std::vector<VectorXd> slopes;
   std::vector<double> weights;
   const double size = tends_to.lpNorm<1>();
   for (const Resolution& level : levels) {
     const VectorXd error = (level.mean() - tends_to) / size;
     if (error.lpNorm<1>() < least) continue;
-    slopes.push_back(error * (length / level.h));
+    slopes.push_back(error * std::pow(length / level.h, order));
     weights.push_back(1.0 / (1.0 + squared(level.h / length / onset)));
   }
   if (slopes.size() < 3) return std::nan("");
@@ -145,34 +158,40 @@ bool is_halving(double coarsest, double h) {
 }  // namespace
 
 ShownErrors shown_errors(std::span<const Resolution> levels, const VectorXd& tends_to,
-                         double uncertainty, double length) {
+                         double uncertainty, double length, const ErrorModel& form,
+                         const std::optional<VectorXd>& start) {
   ShownErrors shown;
+  if (start) shown.motion = motion_of(tends_to, *start);
   double biases = 0.0, scatters = 0.0, scattered = 0.0;
   for (const Resolution& level : levels) {
-    biases += squared(relative_distance(level.mean(), tends_to) * length / level.h);
+    biases +=
+        squared(relative_distance(level.mean(), tends_to) * std::pow(length / level.h, form.order));
     if (level.runs.size() < 2) continue;
     scatters += squared(level.scatter());
     scattered += 1.0;
   }
-  shown.bias = std::sqrt(biases / static_cast<double>(levels.size()));
+  shown.bias = std::sqrt(biases / static_cast<double>(levels.size())) /
+               std::pow(shown.motion, form.motion_order);
   shown.scatter = std::max(1e-4, scattered > 0.0 ? std::sqrt(scatters / scattered) : 0.0);
   const double least = 2.0 * std::max(uncertainty, shown.scatter);
-  shown.irregularity = shown_irregularity(levels, tends_to, least, length);
+  shown.irregularity = shown_irregularity(levels, tends_to, least, length, form.order);
   return shown;
 }
 
-ErrorModel pooled_model(std::span<const ShownErrors> scenes) {
-  double biases = 0.0, scatters = 0.0, irregularities = 0.0, irregular = 0.0;
+ErrorModel pooled_model(std::span<const ShownErrors> scenes, const ErrorModel& form) {
+  double biases = 0.0, motions = 0.0, scatters = 0.0, irregularities = 0.0, irregular = 0.0;
   for (const ShownErrors& scene : scenes) {
     biases += std::log(scene.bias);
+    motions += std::log(scene.motion);
     scatters += squared(scene.scatter);
     if (!std::isfinite(scene.irregularity)) continue;
     irregularities += squared(scene.irregularity);
     irregular += 1.0;
   }
   const auto number = static_cast<double>(scenes.size());
-  ErrorModel model;
+  ErrorModel model = form;
   model.bias = std::exp(biases / number);
+  model.motion = std::exp(motions / number);
   model.scatter = std::sqrt(scatters / number);
   model.irregularity = std::sqrt(irregularities / irregular);
   return model;
@@ -212,6 +231,27 @@ Plan cheapest_plan(const Convergence& so_far, const std::vector<double>& sizes,
     }
   }
   return !best.levels.empty() ? best : !nearest.levels.empty() ? nearest : cheapest;
+}
+
+Outcome run_to_target(Convergence& so_far, const std::vector<double>& sizes,
+                      const std::vector<double>& seconds, double target, double budget,
+                      const std::function<std::optional<VectorXd>(const Level&)>& run) {
+  for (;;) {
+    const std::vector<Resolution>& have = so_far.levels();
+    if (have.size() >= 2 && so_far.estimate().error <= target) return Outcome::met;
+    const Plan plan = cheapest_plan(so_far, sizes, seconds, target, budget);
+    if (have.size() >= 2 && (plan.error > target || plan.cost > budget))
+      return Outcome::out_of_reach;
+    Level next{};
+    for (std::size_t k = 0; k < plan.levels.size(); ++k) {
+      const int made = k < have.size() ? static_cast<int>(have[k].runs.size()) : 0;
+      next = {plan.levels[k].h, made};
+      if (made < plan.levels[k].runs) break;
+    }
+    std::optional<VectorXd> value = run(next);
+    if (!value) return Outcome::stopped;
+    so_far.add(next.h, std::move(*value));
+  }
 }
 
 }  // namespace repose::calibration

@@ -3,6 +3,8 @@
 /// How far runs with finite cells are from what they tend to: a model with few constants, and what
 /// the runs of a scene themselves say. It predicts the error of an estimate before it is made.
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "calibration/richardson.hpp"
@@ -10,15 +12,20 @@
 namespace repose::calibration {
 
 /// Of one quantity in one kind of scene. x = h/ℓ, ℓ a length of the scene; all are relative.
+/// m = |u − u_0|₁/|u|₁ is the quantity's motion, how far it has gone from its value at the start:
+/// what has hardly moved is hardly wrong.
 struct ErrorModel {
-  double bias = 0.0;          ///< |u(h) − u*|₁/|u*|₁ is typically bias·x^order
+  double bias = 0.0;          ///< |u(h) − u*|₁/|u*|₁ is typically bias·m^γ·x^order
   double order = 1.0;         ///< p
+  double motion_order = 0.0;  ///< γ
+  double motion = 1.0;        ///< m of a typical scene, until a run tells
   double irregularity = 0.0;  ///< how far one size's bias is off c·x^p, over it, with fine cells
   double scatter = 0.0;       ///< of one run, from a step to one close by: scatter·x^scatter_order
   double scatter_order = 0.0;
   double caution = 1.0;  ///< the error bar over the expected error E of an estimate
 
-  double expected_bias(double x) const;
+  /// With a scene's own motion; less than 0.02 counts as 0.02.
+  double expected_bias(double x, double scene_motion) const;
   double expected_scatter(double x) const;
   /// With coarse cells what scales with higher powers of x counts as well:
   /// irregularity·√(1 + (x/0.05)²).
@@ -54,6 +61,8 @@ class Convergence {
  public:
   Convergence(const ErrorModel& model, double length) : model_(model), length_(length) {}
 
+  /// The quantity at the start, which motions are measured from; without it the typical one counts.
+  void starts_from(Eigen::VectorXd value) { start_ = std::move(value); }
   /// Takes a run; a new size must be finer than all before.
   void add(double h, Eigen::VectorXd value);
   const std::vector<Resolution>& levels() const { return levels_; }
@@ -71,26 +80,31 @@ class Convergence {
     double error;
   };
   Weighted best_weights(const std::vector<Level>& levels) const;
+  /// m of the finest run so far.
+  double motion() const;
   double scatter_at(double h) const;
   double irregularity_at(double h) const { return model_.irregularity_at(h / length_); }
 
   ErrorModel model_;
   double length_;
   std::vector<Resolution> levels_;
+  std::optional<Eigen::VectorXd> start_;
 };
 
-/// What one scene's levels show against what they tend to, for an ErrorModel of order 1: bias and
-/// scatter (at least 1e-4) as root mean squares over the sizes, and irregularity from sizes whose
-/// error is at least twice the uncertainty of u* and the scatter; NaN where these are fewer than
-/// three.
+/// What one scene's levels show against what they tend to, for a model of `form`'s orders: bias and
+/// scatter (at least 1e-4) as root mean squares over the sizes, irregularity from sizes whose
+/// error is at least twice the uncertainty of u* and the scatter (NaN where these are fewer than
+/// three), and the motion of u* (1 without a start).
 struct ShownErrors {
-  double bias = 0.0, irregularity = 0.0, scatter = 0.0;
+  double bias = 0.0, irregularity = 0.0, scatter = 0.0, motion = 1.0;
 };
 ShownErrors shown_errors(std::span<const Resolution> levels, const Eigen::VectorXd& tends_to,
-                         double uncertainty, double length);
+                         double uncertainty, double length, const ErrorModel& form,
+                         const std::optional<Eigen::VectorXd>& start = {});
 
-/// The model of several scenes: geometric mean of the biases, root mean squares of all else.
-ErrorModel pooled_model(std::span<const ShownErrors> scenes);
+/// The model of several scenes: geometric means of biases and motions, root mean squares of all
+/// else; the rest as in `form`.
+ErrorModel pooled_model(std::span<const ShownErrors> scenes, const ErrorModel& form);
 
 /// What to run.
 struct Plan {
@@ -107,5 +121,17 @@ struct Plan {
 Plan cheapest_plan(const Convergence& so_far, const std::vector<double>& sizes,
                    const std::vector<double>& seconds, double target, double budget,
                    int most_runs = 8);
+
+enum class Outcome {
+  met,           ///< the error bar meets the target
+  out_of_reach,  ///< no plan within the budget does
+  stopped,       ///< a run gave nothing
+};
+/// Runs the cheapest plan, made anew after every run, until the error bar of at least two sizes
+/// meets `target`. run(level) makes one run with cells of level.h, of which there are level.runs
+/// so far; it may change `seconds` on the way.
+Outcome run_to_target(Convergence& so_far, const std::vector<double>& sizes,
+                      const std::vector<double>& seconds, double target, double budget,
+                      const std::function<std::optional<Eigen::VectorXd>(const Level&)>& run);
 
 }  // namespace repose::calibration

@@ -67,7 +67,7 @@ TEST(Richardson, TheErrorBarOfAReferenceBoundsScatter) {
   EXPECT_LE(outside, 4);
 }
 
-const ErrorModel typical{1.0, 1.0, 0.3, 0.002, 0.0, 1.0};
+const ErrorModel typical{.bias = 1.0, .irregularity = 0.3, .scatter = 0.002};
 
 TEST(ErrorModel, FinerCellsAndMoreRunsAreNeverWorse) {
   const Convergence nothing(typical, 1.0);
@@ -123,7 +123,7 @@ TEST(ErrorModel, TheWeightsAreTheBest) {
 }
 
 TEST(ErrorModel, RegularRunsAreExtrapolatedInFull) {
-  Convergence so_far({1.0, 1.0, 1e-6, 1e-9, 0.0, 1.0}, 1.0);
+  Convergence so_far({.bias = 1.0, .irregularity = 1e-6, .scatter = 1e-9}, 1.0);
   for (const double h : {0.2, 0.1, 0.05}) so_far.add(h, value_at(h, 1.3, 1.0));
   const Estimate estimate = so_far.estimate();
   EXPECT_LT(relative_distance(estimate.value, limit), 1e-6);
@@ -135,7 +135,7 @@ TEST(ErrorModel, RegularRunsAreExtrapolatedInFull) {
 
 // Scatter of 5 % and hardly a bias: what is best is the mean.
 TEST(ErrorModel, WhatScattersIsAveraged) {
-  Convergence so_far({1e-4, 1.0, 0.3, 0.05, 0.0, 1.0}, 1.0);
+  Convergence so_far({.bias = 1e-4, .irregularity = 0.3, .scatter = 0.05}, 1.0);
   so_far.add(0.1, VectorXd::Constant(1, 1.05));
   so_far.add(0.05, VectorXd::Constant(1, 0.97));
   // B ≤ 1e-4·0.05 from the model; the change of 8 % is no more than the scatter of two runs allows
@@ -150,7 +150,7 @@ TEST(ErrorModel, PlansBuyTheCheaperOfCellsAndRuns) {
   const std::vector<double> sizes{0.1, 0.08, 0.05, 0.04, 0.025, 0.02, 0.0125};
   std::vector<double> seconds;
   for (const double h : sizes) seconds.push_back(std::pow(0.1 / h, 3));
-  const Convergence steady({1.0, 1.0, 1.0, 1e-6, 0.0, 1.0}, 1.0);
+  const Convergence steady({.bias = 1.0, .irregularity = 1.0, .scatter = 1e-6}, 1.0);
   const double finest = steady.predicted_error({{0.1, 1}, {0.05, 1}, {0.025, 1}, {0.0125, 1}});
   const Plan fine = cheapest_plan(steady, sizes, seconds, 1.001 * finest, HUGE_VAL);
   ASSERT_EQ(fine.levels.size(), 4u) << "those in between are passed by";
@@ -161,7 +161,7 @@ TEST(ErrorModel, PlansBuyTheCheaperOfCellsAndRuns) {
   const double nearly = steady.predicted_error({{0.1, 1}, {0.05, 1}, {0.025, 1}, {0.02, 1}});
   EXPECT_EQ(cheapest_plan(steady, sizes, seconds, 1.001 * nearly, HUGE_VAL).levels.back().h, 0.02);
   // scatter of 2 %, no bias: many runs with coarse cells
-  const Convergence noisy({1e-4, 1.0, 0.3, 0.02, 0.0, 1.0}, 1.0);
+  const Convergence noisy({.bias = 1e-4, .irregularity = 0.3, .scatter = 0.02}, 1.0);
   const Plan many = cheapest_plan(noisy, sizes, seconds, 0.0075, HUGE_VAL);
   EXPECT_EQ(many.levels.back().h, 0.08);
   EXPECT_EQ(many.levels.back().runs, 4) << "2 %/√(4 + 4) = 0.71 %";
@@ -183,17 +183,12 @@ Answer answer_for(const F& value, const ErrorModel& model, double target) {
   for (const double h : sizes) seconds.push_back(std::pow(0.2 / h, 3));
   Convergence so_far(model, 1.0);
   double cost = 0.0;
-  for (;;) {
-    if (so_far.levels().size() >= 2 && so_far.estimate().error <= target) break;
-    const Plan plan = cheapest_plan(so_far, sizes, seconds, target, HUGE_VAL);
-    std::size_t level = 0;
-    while (level < so_far.levels().size() &&
-           static_cast<int>(so_far.levels()[level].runs.size()) >= plan.levels[level].runs)
-      ++level;
-    const double h = plan.levels.at(level).h;
-    so_far.add(h, VectorXd::Constant(1, value(h)));
-    cost += std::pow(0.2 / h, 3);
-  }
+  const Outcome outcome =
+      run_to_target(so_far, sizes, seconds, target, HUGE_VAL, [&](const Level& next) {
+        cost += std::pow(0.2 / next.h, 3);
+        return std::optional(VectorXd::Constant(1, value(next.h)).eval());
+      });
+  EXPECT_EQ(outcome, Outcome::met);
   return {std::abs(so_far.estimate().value[0] - 1.0), cost};
 }
 
@@ -206,7 +201,8 @@ TEST(ErrorModel, RegularErrorsAreMetWithinThreeTimesTheCheapestCost) {
     for (const double b : {0.8, 1.0, 1.25})
       for (const double target : {0.01, 0.03}) {
         const auto value = [&](double h) { return 1.0 + b * std::pow(h, p); };
-        const Answer answer = answer_for(value, {1.0, 1.0, 0.3, 1e-4, 0.0, 1.0}, target);
+        const Answer answer =
+            answer_for(value, {.bias = 1.0, .irregularity = 0.3, .scatter = 1e-4}, target);
         const double cheapest = std::pow(0.2 / std::min(0.2, std::pow(target / b, 1.0 / p)), 3);
         EXPECT_LE(answer.error, 1.5 * target) << p << " " << b << " " << target;
         EXPECT_LE(answer.cost, 3.0 * cheapest) << p << " " << b << " " << target;
@@ -223,22 +219,62 @@ TEST(ErrorModel, ScatterIsAveragedUntilTheTargetIsMet) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> scatter(0.0, 0.01);
     const auto value = [&](double h) { return 1.0 + h + scatter(random); };
-    const Answer answer = answer_for(value, {1.0, 1.0, 0.1, 0.01, 0.0, 1.0}, target);
+    const Answer answer =
+        answer_for(value, {.bias = 1.0, .irregularity = 0.1, .scatter = 0.01}, target);
     if (answer.error <= 1.5 * target) ++met;
   }
   EXPECT_GE(met, 75);
+}
+
+TEST(ErrorModel, RunsEndWhereNoPlanMeetsTheTarget) {
+  const std::vector<double> sizes{0.1, 0.05, 0.025}, seconds{1.0, 8.0, 64.0};
+  const auto value = [](const Level& next) {
+    return std::optional(VectorXd::Constant(1, 1.0 + next.h).eval());
+  };
+  Convergence poor(typical, 1.0);
+  EXPECT_EQ(run_to_target(poor, sizes, seconds, 1e-4, HUGE_VAL, value), Outcome::out_of_reach);
+  EXPECT_GE(poor.levels().size(), 2u) << "there is an estimate";
+  Convergence broken(typical, 1.0);
+  EXPECT_EQ(run_to_target(broken, sizes, seconds, 0.05, HUGE_VAL,
+                          [](const Level&) { return std::optional<VectorXd>(); }),
+            Outcome::stopped);
+  EXPECT_TRUE(broken.levels().empty());
+}
+
+// The model's bias goes with (|u − u_0|/|u|)^γ of the finest run; before there is one, with that of
+// a typical scene.
+TEST(ErrorModel, WhatHasHardlyMovedIsHardlyWrong) {
+  const ErrorModel model{.bias = 2.0, .motion_order = 0.5, .motion = 4.0, .irregularity = 0.3};
+  Convergence so_far(model, 1.0);
+  so_far.starts_from(VectorXd::Constant(1, 1.25));
+  EXPECT_DOUBLE_EQ(so_far.bias_at(0.1), 2.0 * 2.0 * 0.1);
+  so_far.add(0.1, VectorXd::Constant(1, 1.0));
+  EXPECT_DOUBLE_EQ(so_far.bias_at(0.1), 2.0 * 0.5 * 0.1);
+  so_far.starts_from(VectorXd::Constant(1, 1.0));
+  EXPECT_DOUBLE_EQ(so_far.bias_at(0.1), 2.0 * std::sqrt(0.02) * 0.1) << "the least that counts";
+}
+
+// Errors of 0.7 h^0.75 of shares that are 1.6 of what they began with: all is found again.
+TEST(ErrorModel, ConstantsFollowTheOrdersOfTheForm) {
+  const ErrorModel form{.order = 0.75, .motion_order = 0.5};
+  std::vector<Resolution> levels;
+  for (const double h : {0.2, 0.1, 0.05}) levels.push_back({h, {value_at(h, 0.7, 0.75)}});
+  const ShownErrors shown = shown_errors(levels, limit, 1e-9, 1.0, form, VectorXd(limit / 1.6));
+  EXPECT_NEAR(shown.motion, 0.375, 1e-12);
+  EXPECT_NEAR(shown.bias, 0.7 / std::sqrt(0.375), 1e-12);
+  EXPECT_NEAR(shown.irregularity, 0.0, 1e-12);
 }
 
 TEST(ErrorModel, ConstantsAreThoseOfTheRuns) {
   std::vector<Resolution> levels;
   for (const double h : {0.2, 0.1, 0.05, 0.025})
     levels.push_back({h, {value_at(h, 0.7, 1.0), value_at(h, 0.7, 1.0)}});
-  const ShownErrors shown = shown_errors(levels, limit, 1e-3, 1.0);
+  const ShownErrors shown = shown_errors(levels, limit, 1e-3, 1.0, {});
   EXPECT_NEAR(shown.bias, 0.7, 1e-12);
   EXPECT_EQ(shown.scatter, 1e-4) << "the least that is assumed";
   EXPECT_NEAR(shown.irregularity, 0.0, 1e-12) << "an exact order leaves nothing";
   // the two finest are 0.7 × 0.05 off and less: below twice the uncertainty of 2 %
-  EXPECT_TRUE(std::isnan(shown_errors(levels, limit, 0.02, 1.0).irregularity));
+  EXPECT_TRUE(std::isnan(shown_errors(levels, limit, 0.02, 1.0, {}).irregularity));
   // Slopes of 1 and 2 alternate, all below the onset, so that they weigh alike to 1 − 1/(1 +
   // 0.16²): mean 1.5, standard deviation √(4 × 0.25/3).
   std::vector<Resolution> uneven;
@@ -248,10 +284,13 @@ TEST(ErrorModel, ConstantsAreThoseOfTheRuns) {
     slope = 3.0 - slope;
   }
   const double apart = std::sqrt(1.0 / 3.0);
-  EXPECT_NEAR(shown_errors(uneven, limit, 1e-9, 1.0).irregularity, apart / std::hypot(1.5, apart),
-              0.026);
-  const std::vector<ShownErrors> scenes{{2.0, 1.0, 0.01}, {8.0, std::nan(""), 0.01}};
-  const ErrorModel model = pooled_model(scenes);
+  EXPECT_NEAR(shown_errors(uneven, limit, 1e-9, 1.0, {}).irregularity,
+              apart / std::hypot(1.5, apart), 0.026);
+  const std::vector<ShownErrors> scenes{{2.0, 1.0, 0.01, 0.5}, {8.0, std::nan(""), 0.01, 2.0}};
+  const ErrorModel model = pooled_model(scenes, {.order = 0.75, .caution = 2.0});
+  EXPECT_EQ(model.order, 0.75);
+  EXPECT_EQ(model.caution, 2.0);
+  EXPECT_DOUBLE_EQ(model.motion, 1.0);
   EXPECT_DOUBLE_EQ(model.bias, 4.0);
   EXPECT_DOUBLE_EQ(model.scatter, 0.01);
   EXPECT_DOUBLE_EQ(model.irregularity, 1.0);
