@@ -17,7 +17,7 @@ std::string SweepFamily::name() const {
   std::string text =
       fmt::format("{}, {}", mpm::name_of(scene().transfer), mpm::name_of(scene().kernel));
   if (scene().points_per_cell != mpm::Scene{}.points_per_cell)
-    text += fmt::format(", {} points", scene().points_per_cell);
+    text += fmt::format(", {} per cell", scene().points_per_cell);
   if (const std::string variation = runs.front()->variation(); !variation.empty())
     text += ", " + variation;
   return text;

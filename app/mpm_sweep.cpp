@@ -233,7 +233,7 @@ std::vector<SweepSeries> series_of(std::span<const SweepRun> runs) {
 std::string SweepSeries::name() const {
   std::string text(mpm::name_of(scene().transfer));
   if (scene().points_per_cell != mpm::Scene{}.points_per_cell)
-    text += fmt::format(", {} points", scene().points_per_cell);
+    text += fmt::format(", {} per cell", scene().points_per_cell);
   if (const std::string variation = runs.front()->variation(); !variation.empty())
     text += ", " + variation;
   return text;

@@ -301,6 +301,44 @@ TEST_F(CommandTest, AnInterruptedChartGoesOn) {
   EXPECT_EQ(Json::parse(content_of(second.parent_path() / "summary.json")).at("sessions"), 2);
 }
 
+// The chart that is done is kept, the one under way goes on where it was.
+TEST_F(CommandTest, AnInterruptedSetOfChartsGoesOn) {
+  std::ofstream(base_ / "set.toml") << R"(
+[[chart]]
+name = "first"
+kind = "mpm"
+input = "tiny.toml"
+transfers = ["apic"]
+cells = [0.025]
+dts = [2e-5]
+
+[[chart]]
+name = "second"
+kind = "mpm"
+input = "tiny.toml"
+transfers = ["pic"]
+cells = [0.025]
+dts = [2e-5]
+)";
+  ASSERT_EQ(run({"chart", "set.toml", "--quiet", "-o", "whole"}).exit, 0);
+  const pid_t child = start({"chart", "set.toml", "--quiet", "-o", "cut"});
+  const fs::path rows = base_ / "cut/second/runs/tiny_pic_cubic_h0.025_dt2e-05/series.csv";
+  for (int i = 0; i < 6000 && lines_of(content_of(rows)).size() < 6; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  ::kill(child, SIGINT);
+  const Outcome stopped = finish(child);
+  ASSERT_EQ(stopped.exit, 130) << stopped.err;
+  EXPECT_EQ(summary("cut").at("status"), "interrupted");
+  EXPECT_EQ(summary("cut/first").at("status"), "done");
+  EXPECT_EQ(summary("cut/second").at("status"), "interrupted");
+  ASSERT_EQ(run({"chart", "set.toml", "--quiet", "-o", "cut", "--resume"}).exit, 0);
+  EXPECT_EQ(summary("cut").at("status"), "done");
+  EXPECT_EQ(summary("cut").at("parts").at(0).at("kept"), true);
+  EXPECT_EQ(Json::parse(content_of(rows.parent_path() / "summary.json")).at("sessions"), 2);
+  EXPECT_EQ(content_of(base_ / "cut/second/history.csv"),
+            content_of(base_ / "whole/second/history.csv"));
+}
+
 TEST_F(CommandTest, OneProgressLineOnATerminal) {
   int master = -1, slave = -1;
   if (::openpty(&master, &slave, nullptr, nullptr, nullptr) != 0)
