@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "models/scalar.hpp"
+
 namespace repose::mpm {
 
 template <int dim>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "models/scalar.hpp"
+
 namespace repose::mpm {
 
 template <int dim>
