@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/accuracy_picture.hpp"
 #include "app/accuracy_table.hpp"
@@ -366,7 +367,8 @@ class AccurateRun {
   ExitCode stop_at_failure(const ResultFolder& folder, const SweepRun& run) const {
     folder.write_file("summary.json", summary("failed").dump(2) + "\n");
     fmt::print(stderr, "{}: failed: {}\n", run.scene().name,
-               run.summary.value("reason", fmt::format("it has no {}", column_of(quantity_))));
+               run.summary.reason.empty() ? fmt::format("it has no {}", column_of(quantity_))
+                                          : run.summary.reason);
     return ExitCode::numerical_failure;
   }
 

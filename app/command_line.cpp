@@ -4,6 +4,7 @@
 #include <new>
 #include <span>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -136,34 +137,89 @@ std::string origin_line(const std::string& path, const CommonOptions& options) {
   return text;
 }
 
-void add_set(CLI::App& verb, CommonOptions& options) {
-  verb.add_option("--set", options.sets,
-                  "Override a key of the file, as in --set grid.h=0.0125 or "
-                  "--set body[0].law.K=26e3; may be repeated")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+Verb::Verb(CLI::App& root, const std::string& name, const std::string& doc)
+    : app_(root.add_subcommand(name, doc)) {}
+
+void Verb::footer(const std::string& text) { app_->footer(text); }
+
+void Verb::option(const std::string& name, std::string& value, const std::string& doc,
+                  const std::string& type) {
+  app_->add_option(name, value, doc)->type_name(type);
 }
 
-void add_threads(CLI::App& verb, CommonOptions& options) {
-  verb.add_option("--threads", options.threads, "Threads to use (default: one per core)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
+void Verb::required(const std::string& name, std::string& value, const std::string& doc,
+                    const std::string& type) {
+  app_->add_option(name, value, doc)->type_name(type)->required();
 }
 
-void add_quiet(CLI::App& verb, CommonOptions& options) {
-  verb.add_flag("--quiet", options.quiet, "Print nothing but errors");
-  verb.add_flag("--json", options.json, "Print JSON instead of text");
+void Verb::option(const std::string& name, std::optional<double>& value, const std::string& doc,
+                  const std::string& type) {
+  app_->add_option(name, value, doc)->type_name(type);
 }
 
-void add_run_options(CLI::App& verb, CommonOptions& options) {
-  verb.add_option("-o,--output", options.output, "Result folder (default: results/NAME)")
-      ->type_name("DIR");
+void Verb::option(const std::string& name, std::vector<std::string>& values, const std::string& doc,
+                  const std::string& type) {
+  app_->add_option(name, values, doc)->type_name(type);
+}
+
+void Verb::required(const std::string& name, std::vector<std::string>& values,
+                    const std::string& doc, const std::string& type) {
+  app_->add_option(name, values, doc)->type_name(type)->required();
+}
+
+void Verb::repeated(const std::string& name, std::vector<std::string>& values,
+                    const std::string& doc, const std::string& type) {
+  app_->add_option(name, values, doc)->type_name(type)->allow_extra_args(false);
+}
+
+void Verb::integer(const std::string& name, int& value, int lower, int upper,
+                   const std::string& doc, const std::string& type) {
+  app_->add_option(name, value, doc)
+      ->type_name(type)
+      ->check(CLI::Range(lower, upper).description(""));
+}
+
+void Verb::integer(const std::string& name, std::optional<long>& value, long lower, long upper,
+                   const std::string& doc, const std::string& type) {
+  app_->add_option(name, value, doc)
+      ->type_name(type)
+      ->check(CLI::Range(lower, upper).description(""));
+}
+
+void Verb::count(const std::string& name, std::uint64_t& value, const std::string& doc,
+                 const std::string& type) {
+  app_->add_option(name, value, doc)
+      ->type_name(type)
+      ->check(CLI::NonNegativeNumber.description(""));
+}
+
+void Verb::flag(const std::string& name, bool& value, const std::string& doc) {
+  app_->add_flag(name, value, doc);
+}
+
+void add_set(Verb& verb, CommonOptions& options) {
+  verb.repeated("--set", options.sets,
+                "Override a key of the file, as in --set grid.h=0.0125 or "
+                "--set body[0].law.K=26e3; may be repeated",
+                "KEY=VALUE");
+}
+
+void add_threads(Verb& verb, CommonOptions& options) {
+  verb.integer("--threads", options.threads, 0, 4096, "Threads to use (default: one per core)",
+               "N");
+}
+
+void add_quiet(Verb& verb, CommonOptions& options) {
+  verb.flag("--quiet", options.quiet, "Print nothing but errors");
+  verb.flag("--json", options.json, "Print JSON instead of text");
+}
+
+void add_run_options(Verb& verb, CommonOptions& options) {
+  verb.option("-o,--output", options.output, "Result folder (default: results/NAME)", "DIR");
   add_set(verb, options);
   add_threads(verb, options);
-  verb.add_option("--seed", options.seed, "Seed of random numbers, recorded with the result")
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->type_name("N");
-  verb.add_flag("--resume", options.resume, "Continue from the checkpoint in the result folder");
+  verb.count("--seed", options.seed, "Seed of random numbers, recorded with the result", "N");
+  verb.flag("--resume", options.resume, "Continue from the checkpoint in the result folder");
   add_quiet(verb, options);
 }
 

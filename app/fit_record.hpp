@@ -3,7 +3,7 @@
 /// What a fit leaves in words and figures: fit.json, fitted.toml, and the starts' journal that a
 /// resumed or merged fit takes up.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "app/read_fit.hpp"
 #include "calibration/uncertainty.hpp"

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/finished_result.hpp"
 #include "app/resolved_input.hpp"
@@ -84,10 +85,20 @@ std::string_view after_version(std::string_view text) {
   return text.substr(std::min(text.size(), text.find('\n')));
 }
 
+RunSummary read_summary(const fs::path& file) {
+  const auto json = nlohmann::json::parse(text_of(file), nullptr, false);
+  if (!json.is_object()) throw IoError(file, "is not the summary of a run");
+  RunSummary summary;
+  summary.status = json.value("status", "");
+  summary.reason = json.value("reason", "");
+  summary.warnings = json.value("warnings", summary.warnings);
+  for (const auto& [name, value] : json.items())
+    if (value.is_number()) summary.figures[name] = value.get<double>();
+  return summary;
+}
+
 void read_result(SweepRun& run, const fs::path& folder) {
-  run.summary = nlohmann::json::parse(text_of(folder / "summary.json"), nullptr, false);
-  if (!run.summary.is_object())
-    throw IoError(folder / "summary.json", "is not the summary of a run");
+  run.summary = read_summary(folder / "summary.json");
   run.series = columns_of(folder / "series.csv");
   if (!run.done()) return;
   auto profile = columns_of(folder / "profile.csv");
@@ -122,8 +133,8 @@ Sweep with_defaults(Sweep sweep, const mpm::Scene& scene, bool quick,
 }
 
 double SweepRun::figure(std::string_view key) const {
-  const auto found = summary.find(key);
-  return found != summary.end() && found->is_number() ? found->get<double>() : std::nan("");
+  const auto found = summary.figures.find(key);
+  return found != summary.figures.end() ? found->second : std::nan("");
 }
 
 SweepRun run_of(const SceneFile& base, mpm::Scene scene) {

@@ -4,9 +4,10 @@
 /// what their results say of the step's influence.
 
 #include <map>
+#include <optional>
 #include <span>
-
-#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "app/read_chart.hpp"
 #include "app/run_scene.hpp"
@@ -27,11 +28,19 @@ struct SceneVariant {
   std::vector<std::pair<std::string, std::string>> values;  ///< key and value, in that order
 };
 
+/// What summary.json says of a run.
+struct RunSummary {
+  std::string status;  ///< "": no result yet
+  std::string reason;  ///< of a failure
+  std::vector<std::string> warnings;
+  std::map<std::string, double, std::less<>> figures;  ///< every number of it
+};
+
 /// One run of a sweep and, once it is there, its result. Figures keep the names of summary.json.
 struct SweepRun {
   SceneFile file;  ///< named after what is varied, with 60 rows of series
-  std::vector<std::pair<std::string, std::string>> varied;         ///< as in SceneVariant
-  nlohmann::json summary;                                          ///< null: no result yet
+  std::vector<std::pair<std::string, std::string>> varied;  ///< as in SceneVariant
+  RunSummary summary;
   std::map<std::string, std::vector<double>, std::less<>> series;  ///< columns of series.csv
   std::vector<double> x_m, depth_m;                                ///< profile.csv
 
@@ -39,7 +48,7 @@ struct SweepRun {
   /// "sleep_speed 0.003"; "" where nothing but what has a list of its own is varied.
   std::string variation() const;
   /// "" as long as there is no result.
-  std::string status() const { return summary.is_object() ? summary.value("status", "") : ""; }
+  const std::string& status() const { return summary.status; }
   bool done() const { return status() == "done"; }
   /// A number of summary.json; NaN where there is none.
   double figure(std::string_view key) const;

@@ -3,6 +3,8 @@
 /// The tables of `repose chart mpm`, and its answers: does the run-out depend on the step, and what
 /// accuracy does a second buy?
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "app/mpm_errors.hpp"
 
 namespace repose::app {

@@ -14,18 +14,6 @@ using calibration::Compare;
 using calibration::Target;
 using point::Quantity;
 
-namespace {
-
-/// Parameters at the start of the fit with the law's derived ones.
-void complete_start(const LawInfo& law, std::vector<double>& theta) {
-  visit_law(law, [&]<class L>(L) {
-    L::complete(theta);
-    return 0;
-  });
-}
-
-}  // namespace
-
 void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Compared compared,
                                      Target target, TargetAbout about) {
   target.inputs.resize(theta_.size() + calibration::initial_input_count, std::nan(""));
@@ -47,7 +35,7 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
   e.lines = data.lines;
   try {
     std::vector<double> start = theta_;
-    complete_start(*out_.info, start);
+    complete_parameters(*out_.info, start);
     point::check_start(*out_.info, start, e.test);
     target.simulator = calibration::make_point_simulator(std::move(e));
   } catch (const InputError& error) {

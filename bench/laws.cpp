@@ -9,6 +9,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include "models/all_laws.hpp"
+#include "models/law_material.hpp"
 #include "models/registry.hpp"
 
 namespace repose {

@@ -1,6 +1,7 @@
 #include "bench/mpm_cost.hpp"
 
 #include "bench/counted.hpp"
+#include "models/all_laws.hpp"
 #include "models/objective.hpp"
 #include "mpm/grid.hpp"
 

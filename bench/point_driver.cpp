@@ -3,7 +3,9 @@
 //   build/bench/bin/bench_point_driver --benchmark_repetitions=5
 #include <benchmark/benchmark.h>
 
+#include "models/all_laws.hpp"
 #include "models/registry.hpp"
+#include "models/scalar.hpp"
 #include "pointdriver/sensitivity.hpp"
 #include "tests/pointdriver/exact_solutions.hpp"
 

@@ -3,6 +3,8 @@
 /// A path with first derivatives to parameters and initial conditions: dual numbers through the
 /// whole integration, so that yield and every end of a stage are differentiated where they lie.
 
+#include <Eigen/Core>
+
 #include "pointdriver/simulate.hpp"
 
 namespace repose::calibration {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "models/registry.hpp"
+#include "models/all_laws.hpp"
 
 namespace repose {
 

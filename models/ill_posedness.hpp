@@ -7,8 +7,8 @@
 
 #include <optional>
 
+#include "models/dual.hpp"
 #include "models/material.hpp"
-#include "models/scalar.hpp"
 
 namespace repose {
 

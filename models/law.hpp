@@ -8,9 +8,12 @@
 /// Density is kinematics, not state: it is handed in, so a law that needs the specific volume takes
 /// v = ρ_p/ρ. Finite rotation is taken care of outside (objective.hpp).
 
+#include <array>
 #include <concepts>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "models/parameter.hpp"

@@ -4,6 +4,7 @@
 
 #include "models/material.hpp"
 #include "models/objective.hpp"
+#include "models/scalar.hpp"
 
 namespace repose {
 

@@ -12,7 +12,7 @@
 namespace repose {
 
 /// A run of material points with N tensor components (sym.hpp). Every array has room for
-/// padded(count) entries, and the entries behind `count` hold copies of valid points.
+/// padded(count) entries (scalar.hpp), and the entries behind `count` hold copies of valid points.
 template <int N>
 struct BatchOf {
   static constexpr auto components = static_cast<std::size_t>(N);
@@ -31,12 +31,6 @@ struct BatchOf {
 };
 using Batch = BatchOf<4>;         ///< plane strain
 using SpatialBatch = BatchOf<6>;  ///< three dimensions
-
-/// Batches are processed in whole SIMD registers, at most two at a time.
-constexpr std::size_t pack_size = Twin::size;
-constexpr std::size_t padded(std::size_t count) {
-  return (count + pack_size - 1) / pack_size * pack_size;
-}
 
 /// What a law is called and made of, for help texts and readers of input files.
 struct LawInfo {

@@ -10,6 +10,7 @@
 /// p_shift > 0: a finite stiffness p_shift/κ at p = 0).
 
 #include "models/law.hpp"
+#include "models/scalar.hpp"
 
 namespace repose {
 

@@ -7,6 +7,7 @@
 /// I = γ̇ d √(ρ_p/p), μ(I) = μ_0 + (μ_d − μ_0)/(I_0/I + 1), γ̇ = √(2D′:D′), τ = μ(I)p.
 
 #include "models/law.hpp"
+#include "models/scalar.hpp"
 
 namespace repose {
 

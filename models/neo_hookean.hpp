@@ -8,6 +8,7 @@
 /// straight steps has no error of its own. A step of more than 2 in a component of Δε is refused.
 
 #include "models/law.hpp"
+#include "models/scalar.hpp"
 
 namespace repose {
 

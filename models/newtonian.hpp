@@ -3,6 +3,7 @@
 /// Weakly compressible Newtonian fluid (physics.md, NEW): σ = −pI + 2ηD′, p = K[(ρ/ρ0)^α − 1].
 
 #include "models/law.hpp"
+#include "models/scalar.hpp"
 
 namespace repose {
 

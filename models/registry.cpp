@@ -2,16 +2,15 @@
 
 #include <algorithm>
 
+#include "models/all_laws.hpp"
+#include "models/law_material.hpp"
+
 namespace repose {
 namespace {
 
 template <class... L>
 std::vector<LawInfo> collect(const std::tuple<L...>*) {
   return {LawMaterial<L>::info()...};
-}
-
-void complete(const LawInfo& info, std::vector<double>& theta) {
-  visit_law(info, [&]<class L>(L) { L::complete(theta); });
 }
 
 std::string quoted_list(const std::vector<std::string_view>& names) {
@@ -27,6 +26,10 @@ std::string did_you_mean(std::string_view misspelt, const std::vector<std::strin
 }
 
 }  // namespace
+
+void complete_parameters(const LawInfo& law, std::vector<double>& theta) {
+  visit_law(law, [&]<class L>(L) { L::complete(theta); });
+}
 
 std::span<const LawInfo> all_laws() {
   static const std::vector<LawInfo> table = collect(static_cast<const AllLaws*>(nullptr));
@@ -89,7 +92,7 @@ std::vector<double> checked_parameters(const LawSpec& spec) {
                                    ", and this is \"" + std::string(info.option) + "\"");
   }
   std::vector<double> theta = parameter_vector(info.name, info.parameters, spec.values);
-  complete(info, theta);
+  complete_parameters(info, theta);
   return theta;
 }
 

@@ -1,23 +1,18 @@
 #pragma once
 /// \file
-/// Every law of the library. A new law is one header and one entry in AllLaws.
+/// The laws by name: what input files and the programs around a law need. all_laws.hpp has their
+/// types.
 
-#include <tuple>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "models/law_material.hpp"
-#include "models/modified_cam_clay.hpp"
-#include "models/mu_i.hpp"
-#include "models/mu_i_barker_gray.hpp"
-#include "models/neo_hookean.hpp"
-#include "models/newtonian.hpp"
+#include "models/material.hpp"
 
 namespace repose {
-
-/// The first entry of a name is its default form where defaults exist (default_option()).
-using AllLaws =
-    std::tuple<ModifiedCamClay<Compression::ln_v_ln_p>, ModifiedCamClay<Compression::v_ln_p>,
-               MuIElastoviscoplastic, MuIRegularised, MuIBarkerGray, Newtonian<Tension::cut_off>,
-               Newtonian<Tension::carried>, NeoHookean>;
 
 /// A law as an input file writes it.
 struct LawSpec {
@@ -32,26 +27,14 @@ std::span<const LawInfo> all_laws();
 /// The form of `name` that applies if its option is left out, or null if the option is required.
 const LawInfo* default_form(std::string_view name);
 
+/// Derives the values of absent (NaN) optional parameters where the law knows how, and checks
+/// conditions between parameters. Throws InputError.
+void complete_parameters(const LawInfo& law, std::vector<double>& theta);
+
 /// Finds the form, checks and completes the parameters. Throws InputError; its key is a parameter's
 /// or option's name, or "name".
 const LawInfo& find_law(const LawSpec& spec);
 std::vector<double> checked_parameters(const LawSpec& spec);
 std::unique_ptr<Material> make_material(const LawSpec& spec);
-
-/// Calls f(law) with a value of the law type that belongs to `info` (one of all_laws()).
-template <class F>
-auto visit_law(const LawInfo& info, F&& f) {
-  using Result = decltype(f(std::tuple_element_t<0, AllLaws>{}));
-  const auto try_from = [&]<std::size_t i>(const auto& self,
-                                           std::integral_constant<std::size_t, i>) -> Result {
-    using L = std::tuple_element_t<i, AllLaws>;
-    if constexpr (i + 1 < std::tuple_size_v<AllLaws>) {
-      if (L::name != info.name || L::option != info.option)
-        return self(self, std::integral_constant<std::size_t, i + 1>{});
-    }
-    return f(L{});
-  };
-  return try_from(try_from, std::integral_constant<std::size_t, 0>{});
-}
 
 }  // namespace repose

@@ -4,7 +4,8 @@
 ///   double                   one material point (point driver, tests),
 ///   Pack                     one SIMD register of points (Material Point Method batches),
 ///   Twin                     two registers of points (the same, where a law asks for it),
-///   ceres::Jet<double, n>    a dual number (consistent tangents, parameter sensitivities).
+///   Dual<n>                  a dual number (consistent tangents, parameter sensitivities), which
+///                            dual.hpp makes complete.
 /// A law uses select() instead of an if, so that a Pack can take both branches lane by lane.
 
 #include <array>
@@ -13,8 +14,9 @@
 #include <cstdint>
 #include <limits>
 
-#include <ceres/jet.h>
 #include <xsimd/xsimd.hpp>
+
+#include "models/scalar_traits.hpp"
 
 namespace repose {
 
@@ -62,16 +64,12 @@ struct Twin {
   friend Twin expm1(const Twin& x) { return {xsimd::expm1(x.a), xsimd::expm1(x.b)}; }
 };
 
-/// A value with n first derivatives.
-template <int n>
-using Dual = ceres::Jet<double, n>;
+/// Batches are processed in whole SIMD registers, at most two at a time.
+constexpr std::size_t pack_size = Twin::size;
+constexpr std::size_t padded(std::size_t count) {
+  return (count + pack_size - 1) / pack_size * pack_size;
+}
 
-template <class T>
-struct ScalarTraits {
-  using Value = T;    ///< the type without derivatives
-  using Mask = bool;  ///< the result of a comparison
-  static constexpr bool is_dual = false;
-};
 template <>
 struct ScalarTraits<Pack> {
   using Value = Pack;
@@ -84,25 +82,8 @@ struct ScalarTraits<Twin> {
   using Mask = Twin::Mask;
   static constexpr bool is_dual = false;
 };
-template <int n>
-struct ScalarTraits<Dual<n>> {
-  using Value = double;
-  using Mask = bool;
-  static constexpr bool is_dual = true;
-};
-
-template <class T>
-using Value = typename ScalarTraits<T>::Value;
-template <class T>
-using Mask = typename ScalarTraits<T>::Mask;
-
-inline double value(double x) { return x; }
 inline const Pack& value(const Pack& x) { return x; }
 inline const Twin& value(const Twin& x) { return x; }
-template <int n>
-double value(const Dual<n>& x) {
-  return x.a;
-}
 
 /// mask ? a : b, lane by lane for a Pack.
 inline double select(bool mask, double a, double b) { return mask ? a : b; }

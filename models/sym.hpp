@@ -2,7 +2,11 @@
 /// \file
 /// Symmetric 3×3 tensors. Stress is Cauchy stress, tension positive, in Pa.
 
-#include "models/scalar.hpp"
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "models/scalar_traits.hpp"
 
 namespace repose {
 

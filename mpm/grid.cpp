@@ -6,6 +6,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "models/scalar.hpp"
+
 namespace repose::mpm {
 
 template <int dim>

@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <vector>
 
 #include <xsimd/xsimd.hpp>
 
@@ -18,10 +17,6 @@ using Row = xsimd::make_sized_batch<double, 4>::type;
 
 /// Stencil rows that fit side by side in one register.
 constexpr std::size_t rows_per_pack = Pack::size / Row::size;
-
-/// Memory that starts on a cache line, so that no register straddles two.
-template <class T>
-using AlignedVector = std::vector<T, xsimd::aligned_allocator<T, 64>>;
 
 /// Whole numbers below 2^32 held as doubles, to be stored where whole_number() reads them: adding
 /// 2^52 leaves them in the lowest bits.

@@ -4,6 +4,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "models/scalar.hpp"
+
 namespace repose::mpm {
 
 template <int dim>

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "models/material.hpp"
-#include "mpm/lanes.hpp"
+#include "mpm/aligned_vector.hpp"
 
 namespace repose::mpm {
 

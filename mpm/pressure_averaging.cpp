@@ -1,5 +1,7 @@
 #include "mpm/pressure_averaging.hpp"
 
+#include "models/scalar.hpp"
+
 namespace repose::mpm {
 namespace {
 

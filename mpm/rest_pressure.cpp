@@ -5,6 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "mpm/points.hpp"
+
 namespace repose::mpm {
 namespace {
 

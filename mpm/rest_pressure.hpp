@@ -16,9 +16,14 @@
 /// The smooth part is mechanics: a heap at rest keeps stresses from its flow, and needs no
 /// p = ρ g × depth (only −σ_yy integrated over a base must be its weight). The noise is not.
 
-#include "mpm/points.hpp"
+#include <cstdint>
+#include <vector>
 
 namespace repose::mpm {
+
+template <int dim>
+struct PointsOf;
+using PointSet = PointsOf<2>;
 
 /// Root mean squares over the points judged.
 struct Deviation {

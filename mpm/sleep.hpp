@@ -12,7 +12,7 @@
 /// which points have come. What it costs: motion slower than v_s is missed, at most v_s t of
 /// displacement, and stresses below about ρ h v_s/T_w at the border are not followed.
 
-#include "mpm/lanes.hpp"
+#include "mpm/aligned_vector.hpp"
 #include "mpm/step_size.hpp"
 
 namespace repose::mpm {

@@ -1,6 +1,8 @@
 /// The step (transfers with moving-least-squares forces), stage by stage. P2G and G2P have files of
 /// their own.
 
+#include <numeric>
+
 #include "mpm/block_loops.hpp"
 #include "mpm/simulation_impl.hpp"
 #include "mpm/tile_exchange.hpp"

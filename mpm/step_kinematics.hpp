@@ -6,6 +6,7 @@
 /// third order in Δt. (A alone would make density and strain first order in Δt.) A viscous law
 /// takes only the volume from it, and the rest from D = sym L, which is what its stress follows.
 
+#include "mpm/lanes.hpp"
 #include "mpm/points.hpp"
 
 namespace repose::mpm {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/scalar.hpp"
 #include "models/sym.hpp"
 
 namespace repose::point {

@@ -12,6 +12,7 @@
 ///     s⁺ = s⁻ + (f⁻ − f⁺) dt*/dθ,   dt*/dθ = −(F_y·s⁻ + F_θ)/(F_y·f⁻)
 /// at yield; it serves as an independent check.
 
+#include "models/dual.hpp"
 #include "pointdriver/simulate.hpp"
 
 namespace repose::point {

@@ -2,6 +2,7 @@
 #include <nvector/nvector_serial.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include "models/dual.hpp"
 #include "pointdriver/dual_start.hpp"
 #include "pointdriver/sensitivity.hpp"
 

@@ -3,7 +3,8 @@
 /// From a parameter vector and initial conditions to an element ready to be driven, in plain
 /// numbers or with derivatives.
 
-#include "models/registry.hpp"
+#include "models/all_laws.hpp"
+#include "models/dual.hpp"
 #include "pointdriver/drive.hpp"
 #include "pointdriver/simulate.hpp"
 

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "models/all_laws.hpp"
+#include "models/dual.hpp"
+
 namespace repose::point {
 namespace {
 

@@ -120,8 +120,8 @@ ExitCode told(const ChartEnd& end, const CommonOptions& options) {
 }
 
 Command add_chart(CLI::App& root) {
-  CLI::App* verb = root.add_subcommand("chart", "Speed against accuracy");
-  verb->footer(
+  Verb verb(root, "chart", "Speed against accuracy");
+  verb.footer(
       "Examples:\n"
       "  repose chart point          integrators of the point driver: error against time\n"
       "  repose chart fit            optimisers: objective against trials and time\n"
@@ -138,37 +138,29 @@ Command add_chart(CLI::App& root) {
       "error_map.svg (point), table.csv (fit) or history.csv, history.svg and cost.svg (mpm).");
   const auto arguments = std::make_shared<ChartArguments>();
   CommonOptions& options = arguments->common;
-  verb->add_option("WHAT", arguments->what, "point, fit, mpm, all, or a file with a [chart] table")
-      ->required();
-  verb->add_option("FILE", arguments->file,
-                   "fit: a fit file (default: a twin experiment); mpm: a scene or the name of a "
-                   "shipped one (default: flat_mu_i)");
-  verb->add_option("-o,--output", options.output,
-                   "Result folder (default: results/chart_WHAT, or results/gallery)")
-      ->type_name("DIR");
-  verb->add_option("--evaluations", arguments->evaluations,
-                   "fit: most trials of one algorithm (default: 2000)")
-      ->check(CLI::Range(1L, 10000000L).description(""))
-      ->type_name("N");
-  verb->add_option("--seed", options.seed, "fit: seed of the random algorithms")
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->type_name("N");
+  verb.required("WHAT", arguments->what, "point, fit, mpm, all, or a file with a [chart] table",
+                "TEXT");
+  verb.option("FILE", arguments->file,
+              "fit: a fit file (default: a twin experiment); mpm: a scene or the name of a "
+              "shipped one (default: flat_mu_i)",
+              "TEXT");
+  verb.option("-o,--output", options.output,
+              "Result folder (default: results/chart_WHAT, or results/gallery)", "DIR");
+  verb.integer("--evaluations", arguments->evaluations, 1L, 10000000L,
+               "fit: most trials of one algorithm (default: 2000)", "N");
+  verb.count("--seed", options.seed, "fit: seed of the random algorithms", "N");
   for (std::size_t i = 0; i < list_options.size(); ++i)
-    verb->add_option(fmt::format("--{}", list_options[i].name), arguments->lists[i],
-                     fmt::format("mpm: {}", list_options[i].doc))
-        ->type_name("A,B,...");
-  verb->add_flag("--quick", arguments->quick, "Coarse and few: each chart in seconds");
-  verb->add_option("--threads", options.threads,
-                   "mpm: threads of each run (default: 1, so that seconds are those of one core)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 4096).description(""));
-  verb->add_flag(
-      "--resume", options.resume,
-      "Keep charts that are finished from the same input; mpm: go on with an interrupted "
-      "run from its checkpoint (finished runs are never repeated)");
-  add_set(*verb, options);
-  add_quiet(*verb, options);
-  return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
+    verb.option(fmt::format("--{}", list_options[i].name), arguments->lists[i],
+                fmt::format("mpm: {}", list_options[i].doc), "A,B,...");
+  verb.flag("--quick", arguments->quick, "Coarse and few: each chart in seconds");
+  verb.integer("--threads", options.threads, 0, 4096,
+               "mpm: threads of each run (default: 1, so that seconds are those of one core)", "N");
+  verb.flag("--resume", options.resume,
+            "Keep charts that are finished from the same input; mpm: go on with an interrupted "
+            "run from its checkpoint (finished runs are never repeated)");
+  add_set(verb, options);
+  add_quiet(verb, options);
+  return {verb.app(), std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
           [arguments] { return run_chart(*arguments); }};
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
 #include "app/exact_flow.hpp"
@@ -159,8 +160,8 @@ class MpmChart {
                               {"run", count},
                               {"runs", runs_.size()},
                               {"status", run.status()},
-                              {"front_m", run.summary["front_m"]},
-                              {"cpu_s", run.summary["cpu_s"]}}
+                              {"front_m", run.figure("front_m")},
+                              {"cpu_s", run.figure("cpu_s")}}
                              .dump());
     else if (!options_.quiet)
       fmt::print("[{}/{}] {}: {}, front {:.4f} m, {:.2f} s of CPU\n", count, runs_.size(),
@@ -218,11 +219,10 @@ class MpmChart {
     std::vector<std::string> list = scene_.notes;
     for (const SweepRun& run : runs_) {
       if (run.status().empty()) continue;
-      for (const auto& warning : run.summary.value("warnings", nlohmann::json::array()))
-        list.push_back(fmt::format("{}: {}", run.scene().name, warning.get<std::string>()));
+      for (const std::string& warning : run.summary.warnings)
+        list.push_back(fmt::format("{}: {}", run.scene().name, warning));
       if (run.status() == "failed")
-        list.push_back(fmt::format("{}: failed: {}", run.scene().name,
-                                   run.summary.value("reason", std::string())));
+        list.push_back(fmt::format("{}: failed: {}", run.scene().name, run.summary.reason));
     }
     return list;
   }

@@ -144,9 +144,8 @@ ExitCode check_file(const std::string& path, const CommonOptions& options) {
 }  // namespace
 
 Command add_check(CLI::App& root) {
-  CLI::App* verb =
-      root.add_subcommand("check", "Validate an input file, and tell what running it will take");
-  verb->footer(
+  Verb verb(root, "check", "Validate an input file, and tell what running it will take");
+  verb.footer(
       "Examples:\n"
       "  repose check data/scenes/flat_mu_i.toml\n"
       "  repose check data/scenes/flat_mu_i.toml --set grid.h=0.003125\n"
@@ -154,11 +153,11 @@ Command add_check(CLI::App& root) {
       "  repose check data/charts/all.toml");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
-  verb->add_option("FILE.toml", *file, "Input file")->type_name("")->required();
-  add_set(*verb, *options);
-  add_threads(*verb, *options);
-  add_quiet(*verb, *options);
-  return {verb, options, [options, file] { return check_file(*file, *options); }};
+  verb.required("FILE.toml", *file, "Input file", "");
+  add_set(verb, *options);
+  add_threads(verb, *options);
+  add_quiet(verb, *options);
+  return {verb.app(), options, [options, file] { return check_file(*file, *options); }};
 }
 
 }  // namespace repose::app

@@ -5,14 +5,57 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "app/exit_code.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace repose::app {
+
+/// A verb's part of the command line. Only command_line.cpp sees CLI11 itself, which takes seconds
+/// to compile.
+class Verb {
+ public:
+  Verb(CLI::App& root, const std::string& name, const std::string& doc);
+
+  /// What follows the options in the help: examples, and what is written where.
+  void footer(const std::string& text);
+  /// `name`: "--output", "-o,--output", or without dashes an argument by its place. `type`: what
+  /// the help calls the value.
+  void option(const std::string& name, std::string& value, const std::string& doc,
+              const std::string& type);
+  void required(const std::string& name, std::string& value, const std::string& doc,
+                const std::string& type);
+  void option(const std::string& name, std::optional<double>& value, const std::string& doc,
+              const std::string& type);
+  /// One or several values in a row.
+  void option(const std::string& name, std::vector<std::string>& values, const std::string& doc,
+              const std::string& type);
+  void required(const std::string& name, std::vector<std::string>& values, const std::string& doc,
+                const std::string& type);
+  /// One value each time; may be repeated.
+  void repeated(const std::string& name, std::vector<std::string>& values, const std::string& doc,
+                const std::string& type);
+  /// An integer from `lower` to `upper`.
+  void integer(const std::string& name, int& value, int lower, int upper, const std::string& doc,
+               const std::string& type);
+  void integer(const std::string& name, std::optional<long>& value, long lower, long upper,
+               const std::string& doc, const std::string& type);
+  /// An integer >= 0.
+  void count(const std::string& name, std::uint64_t& value, const std::string& doc,
+             const std::string& type);
+  void flag(const std::string& name, bool& value, const std::string& doc);
+
+  CLI::App* app() const { return app_; }
+
+ private:
+  CLI::App* app_;
+};
 
 /// Options that several verbs share; a verb takes those it has a use for.
 struct CommonOptions {
@@ -25,17 +68,17 @@ struct CommonOptions {
   bool json = false;
 };
 
-void add_set(CLI::App& verb, CommonOptions& options);
-void add_threads(CLI::App& verb, CommonOptions& options);
-void add_quiet(CLI::App& verb, CommonOptions& options);
+void add_set(Verb& verb, CommonOptions& options);
+void add_threads(Verb& verb, CommonOptions& options);
+void add_quiet(Verb& verb, CommonOptions& options);
 /// -o, --seed, --resume, --json and the three above.
-void add_run_options(CLI::App& verb, CommonOptions& options);
+void add_run_options(Verb& verb, CommonOptions& options);
 
 /// "From data/scenes/flat_mu_i.toml with --set grid.h=0.0125": where a resolved input comes from.
 std::string origin_line(const std::string& path, const CommonOptions& options);
 
 struct Command {
-  CLI::App* verb;
+  CLI::App* verb;  ///< Verb::app()
   std::shared_ptr<const CommonOptions> options;
   std::function<ExitCode()> run;
 };

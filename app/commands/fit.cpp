@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <tbb/global_control.h>
 
 #include "app/commands/command.hpp"
@@ -277,8 +278,8 @@ class FitRun {
 }  // namespace
 
 Command add_fit(CLI::App& root) {
-  CLI::App* verb = root.add_subcommand("fit", "Fit a law's parameters to experiments");
-  verb->footer(
+  Verb verb(root, "fit", "Fit a law's parameters to experiments");
+  verb.footer(
       "Examples:\n"
       "  repose fit data/experiments/fit_kaolin.toml\n"
       "  repose fit FIT.toml --set solver.starts=64 -o results/wide --resume\n"
@@ -290,17 +291,15 @@ Command add_fit(CLI::App& root) {
   const auto options = std::make_shared<CommonOptions>();
   options->seed = 1;
   const auto arguments = std::make_shared<FitArguments>();
-  verb->add_option("FIT.toml", arguments->file, "Fit file")->type_name("")->required();
-  add_run_options(*verb, *options);
-  verb->add_option("--starts-from", arguments->starts_from, "First start of this share")
-      ->type_name("I")
-      ->check(CLI::NonNegativeNumber.description(""));
-  verb->add_option("--starts-to", arguments->starts_to, "One past the last start of this share")
-      ->type_name("J")
-      ->check(CLI::PositiveNumber.description(""));
-  verb->add_option("--merge", arguments->merge, "Take the starts from these result folders")
-      ->type_name("DIR...");
-  return {verb, options, [options, arguments] { return FitRun(*arguments, *options).run(); }};
+  constexpr int most_starts = std::numeric_limits<int>::max();
+  verb.required("FIT.toml", arguments->file, "Fit file", "");
+  add_run_options(verb, *options);
+  verb.integer("--starts-from", arguments->starts_from, 0, most_starts, "First start of this share",
+               "I");
+  verb.integer("--starts-to", arguments->starts_to, 1, most_starts,
+               "One past the last start of this share", "J");
+  verb.option("--merge", arguments->merge, "Take the starts from these result folders", "DIR...");
+  return {verb.app(), options, [options, arguments] { return FitRun(*arguments, *options).run(); }};
 }
 
 }  // namespace repose::app

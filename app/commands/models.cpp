@@ -4,13 +4,13 @@
 namespace repose::app {
 
 Command add_models(CLI::App& root) {
-  CLI::App* verb = root.add_subcommand("models", "The laws, or the parameters of one law");
-  verb->footer("Examples:\n  repose models\n  repose models mu_i");
+  Verb verb(root, "models", "The laws, or the parameters of one law");
+  verb.footer("Examples:\n  repose models\n  repose models mu_i");
   const auto options = std::make_shared<CommonOptions>();
   const auto name = std::make_shared<std::string>();
-  verb->add_option("LAW", *name, "Name of a law")->type_name("");
-  verb->add_flag("--json", options->json, "Print JSON instead of text");
-  return {verb, options, [options, name] {
+  verb.option("LAW", *name, "Name of a law", "");
+  verb.flag("--json", options->json, "Print JSON instead of text");
+  return {verb.app(), options, [options, name] {
             const std::string text = options->json   ? laws_as_json(*name)
                                      : name->empty() ? law_list()
                                                      : law_description(*name);

@@ -213,8 +213,8 @@ class PointRun {
 }  // namespace
 
 Command add_point(CLI::App& root) {
-  CLI::App* verb = root.add_subcommand("point", "Drive one material point along a path");
-  verb->footer(
+  Verb verb(root, "point", "Drive one material point along a path");
+  verb.footer(
       "Examples:\n"
       "  repose point data/experiments/weald_clay_undrained.toml\n"
       "  repose point data/experiments/weald_clay_undrained.toml --set initial.ocr=8 -o "
@@ -223,12 +223,11 @@ Command add_point(CLI::App& root) {
       "leaves the part done and returns 3.");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
-  verb->add_option("TEST.toml", *file, "Point test")->required();
-  verb->add_option("-o,--output", options->output, "Result folder (default: results/NAME)")
-      ->type_name("DIR");
-  add_set(*verb, *options);
-  add_quiet(*verb, *options);
-  return {verb, options, [options, file] { return PointRun(*file, *options).run(); }};
+  verb.required("TEST.toml", *file, "Point test", "TEXT");
+  verb.option("-o,--output", options->output, "Result folder (default: results/NAME)", "DIR");
+  add_set(verb, *options);
+  add_quiet(verb, *options);
+  return {verb.app(), options, [options, file] { return PointRun(*file, *options).run(); }};
 }
 
 }  // namespace repose::app

@@ -45,8 +45,8 @@ ExitCode report(const std::vector<std::string>& folders, const CommonOptions& op
 }  // namespace
 
 Command add_report(CLI::App& root) {
-  CLI::App* verb = root.add_subcommand("report", "One HTML page from result folders");
-  verb->footer(
+  Verb verb(root, "report", "One HTML page from result folders");
+  verb.footer(
       "Examples:\n"
       "  repose report results/flat_mu_i                     one run: animation, curves, input\n"
       "  repose report results/fine results/coarse -o compare.html    in the same axes\n"
@@ -55,13 +55,11 @@ Command add_report(CLI::App& root) {
       "sent by mail and opens without a network.");
   const auto options = std::make_shared<CommonOptions>();
   const auto folders = std::make_shared<std::vector<std::string>>();
-  verb->add_option("DIR", *folders, "Result folders; several of a kind are compared")
-      ->type_name("...")
-      ->required();
-  verb->add_option("-o,--output", options->output, "The page (default: results/report.html)")
-      ->type_name("FILE.html");
-  add_quiet(*verb, *options);
-  return {verb, options, [options, folders] { return report(*folders, *options); }};
+  verb.required("DIR", *folders, "Result folders; several of a kind are compared", "...");
+  verb.option("-o,--output", options->output, "The page (default: results/report.html)",
+              "FILE.html");
+  add_quiet(verb, *options);
+  return {verb.app(), options, [options, folders] { return report(*folders, *options); }};
 }
 
 }  // namespace repose::app

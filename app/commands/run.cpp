@@ -103,8 +103,8 @@ ExitCode run_file(const RunArguments& arguments) {
 }  // namespace
 
 Command add_run(CLI::App& root) {
-  CLI::App* verb = root.add_subcommand("run", "Run a scene");
-  verb->footer(
+  Verb verb(root, "run", "Run a scene");
+  verb.footer(
       "Examples:\n"
       "  repose run data/scenes/flat_mu_i.toml\n"
       "  repose run data/scenes/flat_mu_i.toml --set grid.h=0.0125 -o results/coarse\n"
@@ -112,24 +112,23 @@ Command add_run(CLI::App& root) {
       "  repose run data/scenes/flat_mu_i.toml --accuracy 0.02 --for front_99 --budget 60");
   const auto arguments = std::make_shared<RunArguments>();
   CommonOptions& options = arguments->common;
-  verb->add_option("SCENE.toml", arguments->file, "Scene file")->type_name("")->required();
-  add_run_options(*verb, options);
-  verb->add_option(
-          "--accuracy", arguments->accuracy,
-          "Relative error to reach, as in 0.02: chooses h, kernel, transfer and step, runs "
-          "coarse and fine ones, and gives what they tend to with an error bar")
-      ->type_name("E");
-  verb->add_option("--for", arguments->quantity,
-                   fmt::format("Of what (with --accuracy): {}", fmt::join(advised_names, ", ")))
-      ->type_name("QUANTITY");
-  verb->add_option("--budget", arguments->budget,
-                   "CPU seconds that --accuracy may take; refuses beforehand what takes more")
-      ->type_name("SECONDS");
-  verb->add_option("--runs", arguments->runs,
-                   "Where the runs of --accuracy lie; those there are not repeated (default: runs/ "
-                   "in the result folder)")
-      ->type_name("DIR");
-  return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
+  verb.required("SCENE.toml", arguments->file, "Scene file", "");
+  add_run_options(verb, options);
+  verb.option("--accuracy", arguments->accuracy,
+              "Relative error to reach, as in 0.02: chooses h, kernel, transfer and step, runs "
+              "coarse and fine ones, and gives what they tend to with an error bar",
+              "E");
+  verb.option("--for", arguments->quantity,
+              fmt::format("Of what (with --accuracy): {}", fmt::join(advised_names, ", ")),
+              "QUANTITY");
+  verb.option("--budget", arguments->budget,
+              "CPU seconds that --accuracy may take; refuses beforehand what takes more",
+              "SECONDS");
+  verb.option("--runs", arguments->runs,
+              "Where the runs of --accuracy lie; those there are not repeated (default: runs/ "
+              "in the result folder)",
+              "DIR");
+  return {verb.app(), std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
           [arguments] { return run_file(*arguments); }};
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
 #include "app/finished_result.hpp"
@@ -149,8 +150,8 @@ ChartEnd stability_maps(const CommonOptions& options, const std::string& file, b
 }
 
 Command add_stability(CLI::App& root) {
-  CLI::App* verb = root.add_subcommand("stability", "Maps of where laws and methods fail");
-  verb->footer(
+  Verb verb(root, "stability", "Maps of where laws and methods fail");
+  verb.footer(
       "Parts: clay (Cam-Clay's update, exact and linearised), mu_i (ill-posed flow of mu(I)),\n"
       "step (largest stable steps), mpm (cell crossing, fracture, locking, ringing), collapse\n"
       "(published failures on purpose, and mended).\n"
@@ -162,19 +163,17 @@ Command add_stability(CLI::App& root) {
       "  repose stability LAW.toml            the maps of the law of the file's [law] table\n"
       "Writes tables, pictures, summary.json and input.toml to results/stability.");
   const auto arguments = std::make_shared<StabilityArguments>();
-  verb->add_option("FILE.toml", arguments->file, "A file with a [law] or a [stability] table")
-      ->type_name("");
-  verb->add_option("--parts", arguments->parts, "Which, as in mu_i,step (default: all)")
-      ->type_name("LIST");
-  verb->add_flag("--quick", arguments->quick, "Coarse maps and short runs");
-  verb->add_option("-o,--output", arguments->common.output,
-                   "Result folder (default: results/stability)")
-      ->type_name("DIR");
-  verb->add_flag("--resume", arguments->common.resume,
-                 "Keep the parts that are finished from the same input");
-  add_set(*verb, arguments->common);
-  add_quiet(*verb, arguments->common);
-  return {verb, std::shared_ptr<const CommonOptions>(arguments, &arguments->common), [arguments] {
+  verb.option("FILE.toml", arguments->file, "A file with a [law] or a [stability] table", "");
+  verb.option("--parts", arguments->parts, "Which, as in mu_i,step (default: all)", "LIST");
+  verb.flag("--quick", arguments->quick, "Coarse maps and short runs");
+  verb.option("-o,--output", arguments->common.output, "Result folder (default: results/stability)",
+              "DIR");
+  verb.flag("--resume", arguments->common.resume,
+            "Keep the parts that are finished from the same input");
+  add_set(verb, arguments->common);
+  add_quiet(verb, arguments->common);
+  return {verb.app(), std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
+          [arguments] {
             CommonOptions options = arguments->common;
             if (!arguments->parts.empty()) options.sets.push_back(parts_override(arguments->parts));
             return told(stability_maps(options, arguments->file, arguments->quick), options);

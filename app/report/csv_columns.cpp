@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/report/thin_evenly.hpp"
 #include "app/result_folder.hpp"

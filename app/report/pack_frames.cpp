@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "app/report/base64.hpp"
 #include "app/report/thin_evenly.hpp"
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "mpm/frame_reader.hpp"
 

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "embedded_report.hpp"
 #include "repose_version.hpp"
 

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/input_file.hpp"
 #include "app/report/csv_columns.hpp"

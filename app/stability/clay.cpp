@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/stability/part.hpp"
 #include "models/modified_cam_clay.hpp"

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/stability/part.hpp"
 #include "mpm/failure_modes.hpp"

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "app/stability/part.hpp"
 #include "models/ill_posedness.hpp"

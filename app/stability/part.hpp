@@ -3,7 +3,7 @@
 /// The parts of `repose stability`: each calls the library, writes its tables and pictures, and
 /// returns the figures that summary.json gets under its name.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "app/plot/figure.hpp"
 #include "app/result_folder.hpp"

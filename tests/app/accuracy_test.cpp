@@ -153,7 +153,8 @@ SweepRun run_with(double h, double courant, double front, double cpu) {
   scene.series_interval = 1.0;
   scene.bodies.resize(1);
   scene.bodies[0].size = {0.5, 0.5};
-  run.summary = {{"status", "done"}, {"front_m", front}, {"height_m", 1.0}, {"cpu_s", cpu}};
+  run.summary.status = "done";
+  run.summary.figures = {{"front_m", front}, {"height_m", 1.0}, {"cpu_s", cpu}};
   run.series["kinetic_J_per_m"] = {0.0, 1.0 + h};
   // a wedge whose volume does not depend on the cells
   run.x_m = {0.0, 1.0, 2.0};

@@ -27,8 +27,12 @@ SweepRun run_with(double courant, std::vector<double> depth, double front) {
   scene.courant = courant;
   scene.bodies.resize(1);
   scene.bodies[0].size = {1.0, 2.0};
-  run.summary = {{"status", "done"},     {"front_m", front}, {"front_99_m", 0.8 * front},
-                 {"height_m", depth[0]}, {"time_s", 1.0},    {"steps", 1.0 / courant}};
+  run.summary.status = "done";
+  run.summary.figures = {{"front_m", front},
+                         {"front_99_m", 0.8 * front},
+                         {"height_m", depth[0]},
+                         {"time_s", 1.0},
+                         {"steps", 1.0 / courant}};
   run.depth_m = std::move(depth);
   return run;
 }
@@ -58,7 +62,7 @@ TEST(MpmSweep, ChangesAreMeasuredFromTheShortestStep) {
 TEST(MpmSweep, WhatIsNotThereIsNotCompared) {
   std::vector<SweepRun> runs{run_with(0.4, {2.2, 1.0, 0.0}, 1.1),
                              run_with(0.1, {2.0, 1.0, 0.0}, 1.0)};
-  runs[1].summary["status"] = "failed";
+  runs[1].summary.status = "failed";
   EXPECT_EQ(series_of(runs)[0].finest(), &runs[0]) << "a failed run is no reference";
   EXPECT_FALSE(change_between(runs[0], runs[1]));
   EXPECT_FALSE(change_when_quartered(series_of(runs)[0]));

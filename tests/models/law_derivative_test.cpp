@@ -7,6 +7,7 @@
 /// fails only where the fourth-order term rules, and by round-off, noise/h. Both make the
 /// tolerance.
 
+#include "models/dual.hpp"
 #include "tests/models/law_samples.hpp"
 
 namespace repose {

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "models/all_laws.hpp"
+#include "models/law_material.hpp"
 #include "models/registry.hpp"
 
 namespace repose {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/dual.hpp"
 #include "models/objective.hpp"
 #include "models/sym.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/scalar.hpp"
 #include "tests/mpm/saved_state.hpp"
 #include "tests/mpm/scenes.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/scalar.hpp"
 #include "tests/mpm/point_cloud.hpp"
 
 namespace repose::mpm {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/scalar.hpp"
 #include "mpm/transfer.hpp"
 #include "tests/mpm/point_cloud.hpp"
 #include "tests/mpm/saved_state.hpp"

@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 
+#include "models/scalar.hpp"
 #include "mpm/points.hpp"
 #include "tests/mpm/reference_grid.hpp"
 #include "tests/mpm/saved_state.hpp"

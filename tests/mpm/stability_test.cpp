@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/law_material.hpp"
 #include "models/linearised_cam_clay.hpp"
 #include "mpm/blow_up.hpp"
 #include "mpm/failure_modes.hpp"

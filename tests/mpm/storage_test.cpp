@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/scalar.hpp"
 #include "tests/mpm/point_cloud.hpp"
 #include "tests/mpm/scenes.hpp"
 
