@@ -18,8 +18,8 @@ struct Row {
   double bias, motion, irregularity, scatter;
 };
 
-/// What does not depend on the law, in the order of Quantity; chosen by `scripts/accuracy rehearse`
-/// (docs/accuracy.md).
+/// What does not depend on the law, in the order of Quantity; `scripts/accuracy rehearse` tells
+/// what it is worth (docs/accuracy.md).
 struct Form {
   double order, motion_order, caution;
 };
