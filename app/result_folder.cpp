@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 52> outputs{"summary.json",
+constexpr std::array<std::string_view, 56> outputs{"summary.json",
                                                    "checkpoint.h5",
                                                    "series.csv",
                                                    "profile.csv",
@@ -54,6 +54,10 @@ constexpr std::array<std::string_view, 52> outputs{"summary.json",
                                                    "mu_i_refinement.svg",
                                                    "mu_i_curves.csv",
                                                    "mu_i_curves.svg",
+                                                   "mu_i_shear_signs.csv",
+                                                   "mu_i_shear_signs.svg",
+                                                   "mu_i_shear_refinement.csv",
+                                                   "mu_i_shear_refinement.svg",
                                                    "mu_i_collapse.csv",
                                                    "mu_i_collapse.svg",
                                                    "step_limits.csv",

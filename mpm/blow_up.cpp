@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "mpm/noise.hpp"
 #include "mpm/simulation.hpp"
 
 namespace repose::mpm {
@@ -26,12 +27,6 @@ LawSpec solid() {
   // λ + 2μ = E(1 − ν)/((1 + ν)(1 − 2ν))
   const double E = modulus * (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson);
   return {"neo_hookean", {}, {{"E", E}, {"nu", poisson}, {"rho_0", rho}}};
-}
-
-/// A number in [−1, 1] that looks random but is the same every time.
-double scatter(double x, double y, double seed) {
-  const double s = std::sin(12.9898 * x + 78.233 * y + 37.719 * seed) * 43758.5453;
-  return 2.0 * (s - std::floor(s)) - 1.0;
 }
 
 Scene scene_of(const StepTrial& trial, const LawSpec& law) {

@@ -105,12 +105,39 @@ void flow_steadily(Points& points, std::size_t count, const ShearFlow& flow, dou
   points.copy_first();
 }
 
+struct Wave {
+  double kx, ky, vx, vy;
+};
+
+/// ρ dû/dt = −δσ·k − ρ(û·∇)U over a step, δσ from point i to the undisturbed one.
+void accelerate(Wave& w, const Points& points, std::size_t i, std::size_t undisturbed,
+                const ShearFlow& flow, double rho, double dt) {
+  const auto excess = [&](std::size_t c) {
+    return points.stress(c, i) - points.stress(c, undisturbed);
+  };
+  const double xx = excess(0), yy = excess(1), xy = excess(3), vy = w.vy;
+  w.vx -= dt * ((xx * w.kx + xy * w.ky) / rho + flow.shear_rate * vy);
+  w.vy -= dt * (xy * w.kx + yy * w.ky) / rho;
+}
+
+void strain(Points& points, std::size_t i, const Wave& w, const ShearFlow& flow, double dt) {
+  points.set_gradient(i, flow.shear_rate, w.vx, w.vy, w.kx, w.ky, dt);
+}
+
 /// ρ and K = ρ dp/dρ at p.
 std::array<double, 2> density_and_bulk_modulus(const Material& material, double p) {
   const double rho = material.density_at(p, 1.0);
   const double step = 1e-3 * p;
   return {rho, rho * 2.0 * step /
                    (material.density_at(p + step, 1.0) - material.density_at(p - step, 1.0))};
+}
+
+/// Leapfrog: ω Δt < 2 for waves, and for a law that is viscous at once 4/3 ηk²/ρ Δt < 2.
+double step_of(Points& points, const Material& material, const ShearFlow& flow, double k) {
+  double signal = k * std::sqrt(points.modulus() / material.density_at(flow.p, 1.0));
+  if (!material.law().has_stress_memory)
+    signal = std::max(signal, 4.0 * viscous_rate(material, flow, k));
+  return 0.3 / signal;
 }
 
 }  // namespace
@@ -141,50 +168,39 @@ std::vector<WaveGrowth> wave_growth(const Material& material, const ShearFlow& f
   const auto [rho, K] = density_and_bulk_modulus(material, flow.p);
   const double viscous = viscous_rate(material, flow, k);
   const double share = viscous / (k * std::sqrt(K / rho));
-  // leapfrog: ω Δt < 2 for waves, and for a law that is viscous at once 4/3 ηk²/ρ Δt < 2
-  double signal = k * std::sqrt(points.modulus() / rho);
-  if (!material.law().has_stress_memory) signal = std::max(signal, 4.0 * viscous);
-  const double dt = 0.3 / signal;
+  const double dt = step_of(points, material, flow, k);
   const double end = 20.0 * (1.0 + share * share) / viscous;
   flow_steadily(points, n + 1, flow, dt);
 
-  struct Wave {
-    double kx, ky, vx, vy;
+  struct Noise {
+    Wave wave;
     std::vector<double> log_size;  ///< ln|û|, at the moments of `times`
     bool over = false;
   };
   const double start = 1e-5 * flow.shear_rate / k;
-  std::vector<Wave> waves(n);
+  std::vector<Noise> waves(n);
   for (std::size_t i = 0; i < n; ++i) {
     const double angle = std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
     // across k, where all modes of slow growth are, and a little along it
-    waves[i] = {k * std::cos(angle),
-                k * std::sin(angle),
-                start * (0.3 * std::cos(angle) - std::sin(angle)),
-                start * (0.3 * std::sin(angle) + std::cos(angle)),
-                {},
-                false};
+    waves[i].wave = {k * std::cos(angle), k * std::sin(angle),
+                     start * (0.3 * std::cos(angle) - std::sin(angle)),
+                     start * (0.3 * std::sin(angle) + std::cos(angle))};
   }
   const long steps = std::lround(std::ceil(end / dt));
   const long stride = std::max(1L, steps / 400);
   for (long step = 0; step < steps; ++step) {
     std::size_t running = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      Wave& w = waves[i];
-      const double xx = points.stress(0, i) - points.stress(0, n);
-      const double yy = points.stress(1, i) - points.stress(1, n);
-      const double xy = points.stress(3, i) - points.stress(3, n);
+      Noise& w = waves[i];
       if (!w.over) {
-        const double vy = w.vy;
-        w.vx -= dt * ((xx * w.kx + xy * w.ky) / rho + flow.shear_rate * vy);
-        w.vy -= dt * (xy * w.kx + yy * w.ky) / rho;
+        accelerate(w.wave, points, i, n, flow, rho, dt);
         ++running;
       } else {
-        w.vx = w.vy = 0.0;
+        w.wave.vx = w.wave.vy = 0.0;
       }
-      points.set_gradient(i, flow.shear_rate, w.vx, w.vy, w.kx, w.ky, dt);
+      strain(points, i, w.wave, flow, dt);
       if (w.over || step % stride != 0) continue;
-      w.log_size.push_back(std::log(std::hypot(w.vx, w.vy)));
+      w.log_size.push_back(std::log(std::hypot(w.wave.vx, w.wave.vy)));
       w.over = std::abs(w.log_size.back() - w.log_size.front()) > std::log(100.0);
     }
     if (running == 0) break;
@@ -210,6 +226,36 @@ std::vector<WaveGrowth> wave_growth(const Material& material, const ShearFlow& f
                       cross / (square * dt * static_cast<double>(stride))});
   }
   return result;
+}
+
+std::vector<double> follow_wave(const Material& material, const ShearFlow& flow,
+                                const std::function<std::array<double, 2>(double t)>& wave_vector,
+                                double interval, std::size_t samples) {
+  Points points(material, 2, flow.p);
+  const double rho = material.density_at(flow.p, 1.0);
+  const auto [kx, ky] = wave_vector(0.0);
+  const double k = std::hypot(kx, ky), start = 1e-5 * flow.shear_rate / k;
+  const double most = step_of(points, material, flow, k);
+  flow_steadily(points, 2, flow, most);
+  Wave wave{kx, ky, start * ky / k, -start * kx / k};
+  std::vector<double> log_size{0.0};
+  const long steps = std::lround(std::ceil(interval / most));
+  const double dt = interval / static_cast<double>(steps);
+  for (std::size_t sample = 1; sample < samples; ++sample) {
+    for (long step = 0; step < steps; ++step) {
+      const double t =
+          interval * static_cast<double>(sample - 1) + dt * (static_cast<double>(step) + 0.5);
+      const auto now = wave_vector(t);
+      wave.kx = now[0];
+      wave.ky = now[1];
+      accelerate(wave, points, 0, 1, flow, rho, dt);
+      strain(points, 0, wave, flow, dt);
+      points.set_gradient(1, flow.shear_rate, 0.0, 0.0, 0.0, 0.0, dt);
+      points.advance(dt);
+    }
+    log_size.push_back(std::log(std::hypot(wave.vx, wave.vy) / start));
+  }
+  return log_size;
 }
 
 WaveGrowth fastest(const std::vector<WaveGrowth>& waves) {

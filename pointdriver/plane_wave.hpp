@@ -10,6 +10,8 @@
 /// The direction of k is held (Barker et al. 2015): shear turns it by γ̇t, which does not matter
 /// where waves grow or decay much faster than γ̇.
 
+#include <array>
+#include <functional>
 #include <vector>
 
 #include "models/material.hpp"
@@ -44,6 +46,13 @@ double wave_number_of_share(const Material& material, const ShearFlow& flow, dou
 /// cannot flow at such a pressure.
 std::vector<WaveGrowth> wave_growth(const Material& material, const ShearFlow& flow,
                                     double wave_number, std::size_t directions);
+
+/// Follows one wave whose vector k(t) [1/m] is given, such as one that the flow turns: ln|û| at
+/// `samples` times `interval` [s] apart, the first of them the start, where û is across k and ln|û|
+/// 0. Throws InputError as wave_growth().
+std::vector<double> follow_wave(const Material& material, const ShearFlow& flow,
+                                const std::function<std::array<double, 2>(double t)>& wave_vector,
+                                double interval, std::size_t samples);
 
 /// The wave of the highest rate.
 WaveGrowth fastest(const std::vector<WaveGrowth>& waves);

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/stability/grains.hpp"
 #include "app/stability/part.hpp"
 #include "models/ill_posedness.hpp"
 #include "mpm/history.hpp"
 #include "mpm/ill_posed_points.hpp"
-#include "pointdriver/plane_wave.hpp"
 
 namespace repose::app {
 namespace {
@@ -19,35 +19,19 @@ namespace {
 using Json = nlohmann::ordered_json;
 using point::ShearFlow;
 
-/// Growth rates within this share of ηk²/ρ are too close to neutral to be judged.
-constexpr double margin = 0.002;
 /// ηk²/ρ over ck of the waves that judge the (incompressible) criterion, and K/p.
 constexpr double acoustic_share = 0.05;
 constexpr double stiffness = 1e5;
 
-/// The grains with other values, as a form.
 std::unique_ptr<Material> grains(const LawSpec& law, const std::string& form,
                                  const std::map<std::string, double>& values) {
-  LawSpec spec = law;
-  spec.options["form"] = form;
-  const LawInfo& info = find_law({spec.name, spec.options, {}});
-  std::erase_if(spec.values, [&](const auto& value) {
-    return std::none_of(info.parameters.begin(), info.parameters.end(),
-                        [&](const ParamInfo& p) { return p.name == value.first; });
-  });
-  spec.values.erase("G");  // 4K, which follows K
-  for (const auto& [key, value] : values) spec.values[key] = value;
-  return make_material(spec);
-}
-
-ShearFlow flow_of(const Material& material, double p, double I) {
-  return {p, I / (material.parameter("d") * std::sqrt(material.parameter("rho_p") / p))};
+  return make_material(grains_as(law, form, values));
 }
 
 /// What is measured and predicted for one flow, both in units of ηk²/ρ.
 struct Judged {
   double C = 0.0, predicted = 0.0, measured = 0.0, angle_deg = 0.0, rate = 0.0;
-  bool outside_margin() const { return std::abs(predicted) > margin; }
+  bool outside_margin() const { return std::abs(predicted) > neutral_margin; }
   bool agrees() const { return (predicted > 0.0) == (measured > 0.0); }
 };
 
@@ -69,10 +53,11 @@ class GrainMaps {
         directions_(input.quick ? 48 : 96) {}
 
   Json run() {
-    Json j{{"margin", margin}, {"acoustic_share", acoustic_share}, {"K_over_p", stiffness}};
+    Json j{{"margin", neutral_margin}, {"acoustic_share", acoustic_share}, {"K_over_p", stiffness}};
     j["boundary"] = boundary();
     j["refinement"] = refinement();
     j["curves"] = curves();
+    j["shear_cell"] = shear_cell(input_, out_);
     j["collapse"] = collapse();
     return j;
   }

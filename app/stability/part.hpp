@@ -31,6 +31,8 @@ class PartOutput {
 
 nlohmann::ordered_json map_clay(const StabilityInput& input, PartOutput& out);
 nlohmann::ordered_json map_mu_i(const StabilityInput& input, PartOutput& out);
+/// Of map_mu_i: the same growth measured with the Material Point Method.
+nlohmann::ordered_json shear_cell(const StabilityInput& input, PartOutput& out);
 nlohmann::ordered_json map_step(const StabilityInput& input, PartOutput& out);
 nlohmann::ordered_json map_mpm(const StabilityInput& input, PartOutput& out);
 nlohmann::ordered_json map_collapse(const StabilityInput& input, PartOutput& out);

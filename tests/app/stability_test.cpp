@@ -49,6 +49,14 @@ TEST_F(Stability, QuickMapsOfMuI) {
   const auto& boundary = summary["parts"]["mu_i"]["boundary"];
   EXPECT_GE(boundary["share_outside_margin"].get<double>(), 0.95);
   EXPECT_GE(boundary["outside_margin"].get<int>(), 50);
+  // and so it is in a Material Point shear cell, whose waves grow with the square of 1/h
+  const auto& cell = summary["parts"]["mu_i"]["shear_cell"];
+  EXPECT_GE(cell["signs"]["outside_margin"].get<int>(), 6);
+  EXPECT_EQ(cell["signs"]["agree_outside_margin"], cell["signs"]["outside_margin"]);
+  const auto& growth = cell["refinement"]["fixed_cells"];
+  EXPECT_NEAR(growth[1]["rate_over_shear_rate"].get<double>() /
+                  growth[0]["rate_over_shear_rate"].get<double>(),
+              4.0, 0.2);
   for (const auto& file : summary["files"])
     EXPECT_TRUE(fs::exists(folder / "out" / file.get<std::string>())) << file;
 }

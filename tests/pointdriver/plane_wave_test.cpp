@@ -75,6 +75,21 @@ TEST(PlaneWave, CompressibilityBoundsTheGrowth) {
   EXPECT_NEAR(rate(2548.0, 20.0) / rate(254.8, 20.0), 10.0, 0.5);
 }
 
+// One wave whose vector is held is one of the directions of noise. Both rates are slopes of the
+// second half of times that differ, of motions of which the slower share, 0.05², is left: 1 %.
+TEST(PlaneWave, AWaveThatIsFollowed) {
+  const auto material = grains(1e5);
+  const ShearFlow flow = flow_at(0.005);
+  const double k = wave_number_of_share(*material, flow, 0.05);
+  const double end = 20.0 / viscous_rate(*material, flow, k);
+  const WaveGrowth noise = wave_growth(*material, flow, k, 32)[15];
+  const auto held = [&](double) {
+    return std::array{k * std::cos(noise.angle), k * std::sin(noise.angle)};
+  };
+  const std::vector<double> log_size = follow_wave(*material, flow, held, end / 20.0, 21);
+  EXPECT_NEAR((log_size[20] - log_size[10]) / (0.5 * end), noise.rate, 0.01 * noise.rate);
+}
+
 TEST(PlaneWave, ViscosityOfTheFlow) {
   const auto material = grains(1e5);
   const ShearFlow flow = flow_at(0.1);
