@@ -1,6 +1,7 @@
 #include "app/shipped_input.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -21,7 +22,8 @@ InputFile open_scene(const std::string& name_or_file, std::span<const std::strin
   if (found != embedded_scenes.end())
     return InputFile::parse(found->text, name_or_file + ".toml", overrides);
   // a file without a dot or slash is likelier a misspelt name
-  if (name_or_file.find_first_of("./") == std::string::npos) {
+  if (name_or_file.find_first_of("./") == std::string::npos &&
+      !std::filesystem::exists(name_or_file)) {
     const std::string near = closest(name_or_file, shipped_scenes());
     throw BadInput({fmt::format("there is no scene '{}': {}, or a .toml file{}", name_or_file,
                                 fmt::join(shipped_scenes(), ", "),

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Inputs that the program holds: the scenes that charts and maps are made of, and the set of
-/// charts of `repose chart all`.
+/// Inputs that the program holds: the scenes of data/scenes, and the set of charts of `repose chart
+/// all`.
 
 #include "app/input_file.hpp"
 
@@ -10,8 +10,8 @@ namespace repose::app {
 /// Their names: "flat_mu_i", ...
 std::vector<std::string_view> shipped_scenes();
 
-/// A shipped scene by its name, or a file. Errors: those of InputFile; for what is neither a
-/// shipped name nor ends in .toml, BadInput with the nearest name.
+/// A shipped scene by its name, or a file. Errors: those of InputFile; for a name that is neither,
+/// BadInput with the nearest one.
 InputFile open_scene(const std::string& name_or_file, std::span<const std::string> overrides = {});
 
 /// data/charts/all.toml as it was built in.

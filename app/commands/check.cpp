@@ -8,6 +8,7 @@
 #include "app/read_fit.hpp"
 #include "app/read_point_test.hpp"
 #include "app/read_scene.hpp"
+#include "app/shipped_input.hpp"
 #include "app/stability/read_stability.hpp"
 #include "mpm/simulation.hpp"
 
@@ -126,7 +127,7 @@ ExitCode check_charts(const std::string& path, const CommonOptions& options) {
 }
 
 ExitCode check_file(const std::string& path, const CommonOptions& options) {
-  InputFile input = InputFile::read(path, options.sets);
+  InputFile input = open_scene(path, options.sets);
   if (is_chart_set(input)) return check_charts(path, options);
   switch (kind_of(input)) {
     case FileKind::scene:
@@ -153,7 +154,7 @@ Command add_check(CLI::App& root) {
       "  repose check data/charts/all.toml");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
-  verb.required("FILE.toml", *file, "Input file", "");
+  verb.required("FILE.toml", *file, "Input file, or the name of a scene, as in flat_mu_i", "");
   add_set(verb, *options);
   add_threads(verb, *options);
   add_quiet(verb, *options);

@@ -9,6 +9,7 @@
 #include "app/resolved_input.hpp"
 #include "app/result_folder.hpp"
 #include "app/run_scene.hpp"
+#include "app/shipped_input.hpp"
 
 namespace repose::app {
 namespace {
@@ -54,7 +55,7 @@ ExitCode run_accurately(const RunArguments& arguments) {
   request.target = number("accuracy", *arguments.accuracy, 0.5, "the relative error");
   if (arguments.budget) request.budget = number("budget", *arguments.budget, 1e9, "CPU seconds");
   refuse_chosen_keys(options);
-  InputFile input = InputFile::read(arguments.file, options.sets);
+  InputFile input = open_scene(arguments.file, options.sets);
   require_kind(input, FileKind::scene, "run");
   request.file = read_scene(input);
   request.origin = origin_line(arguments.file, options);
@@ -79,7 +80,7 @@ ExitCode run_file(const RunArguments& arguments) {
                                       {!arguments.quantity.empty(), "--for"},
                                       {!arguments.runs.empty(), "--runs"}})
     if (given) throw BadInput({fmt::format("{} goes with --accuracy, which is missing", option)});
-  InputFile input = InputFile::read(path, options.sets);
+  InputFile input = open_scene(path, options.sets);
   require_kind(input, FileKind::scene, "run");
   RunRequest request;
   request.file = read_scene(input);
@@ -106,13 +107,14 @@ Command add_run(CLI::App& root) {
   Verb verb(root, "run", "Run a scene");
   verb.footer(
       "Examples:\n"
-      "  repose run data/scenes/flat_mu_i.toml\n"
-      "  repose run data/scenes/flat_mu_i.toml --set grid.h=0.0125 -o results/coarse\n"
-      "  repose run data/scenes/flat_mu_i.toml --resume     after an interruption (Ctrl-C)\n"
-      "  repose run data/scenes/flat_mu_i.toml --accuracy 0.02 --for front_99 --budget 60");
+      "  repose run flat_mu_i                     a scene that comes with the program\n"
+      "  repose run MY.toml --set grid.h=0.0125 -o results/coarse\n"
+      "  repose run MY.toml --resume              after an interruption (Ctrl-C)\n"
+      "  repose run flat_mu_i --accuracy 0.02 --for front_99 --budget 60");
   const auto arguments = std::make_shared<RunArguments>();
   CommonOptions& options = arguments->common;
-  verb.required("SCENE.toml", arguments->file, "Scene file", "");
+  verb.required("SCENE", arguments->file,
+                fmt::format("A file, or one of {}", fmt::join(shipped_scenes(), ", ")), "");
   add_run_options(verb, options);
   verb.option("--accuracy", arguments->accuracy,
               "Relative error to reach, as in 0.02: chooses h, kernel, transfer and step, runs "

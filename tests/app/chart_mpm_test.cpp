@@ -272,9 +272,9 @@ TEST_F(ChartMpm, SaysWhatIsWrong) {
   EXPECT_EQ(complaint({"point", "--cells", "0.1"}), "--cells belongs to repose chart mpm\n");
   EXPECT_EQ(complaint({"point", "--evaluations", "5"}),
             "--evaluations belongs to repose chart fit\n");
-  EXPECT_EQ(complaint({"mpm", "flat_mui"}),
-            "there is no scene 'flat_mui': flat_mu_i, flat_mu_i_soft, flat_newtonian, flat_mcc, "
-            "couette, inclined_layer, or a .toml file; did you mean 'flat_mu_i'?\n");
+  const std::string misspelt = complaint({"mpm", "flat_mui"});
+  EXPECT_TRUE(misspelt.starts_with("there is no scene 'flat_mui': ")) << misspelt;
+  EXPECT_TRUE(misspelt.ends_with(", or a .toml file; did you mean 'flat_mu_i'?\n")) << misspelt;
   EXPECT_EQ(complaint({scene}),
             scene + ":1:1: [chart] needs kind = \"point\" or \"fit\" or \"mpm\"\n");
   std::ofstream(base_ / "c.toml") << content_of(scene) << "[chart]\nkind = \"mpm\"\ncels = [0.1]\n";

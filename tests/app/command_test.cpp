@@ -154,6 +154,26 @@ TEST_F(CommandTest, Check) {
   EXPECT_EQ(fs::exists(base_ / "results"), false);
 }
 
+// Every scene of data/scenes goes by its name, wherever the program is started.
+TEST_F(CommandTest, ShippedScenesByName) {
+  for (const auto& entry : fs::directory_iterator(scenes)) {
+    if (entry.path().extension() != ".toml") continue;
+    const std::string name = entry.path().stem();
+    const Outcome by_name = run({"check", name, "--json"});
+    EXPECT_EQ(by_name.exit, 0) << name << by_name.err;
+    EXPECT_EQ(Json::parse(by_name.out).at("points"),
+              Json::parse(run({"check", entry.path(), "--json"}).out).at("points"));
+  }
+  EXPECT_EQ(
+      run({"run", "couette", "--quiet", "--set", "grid.h=0.0125", "--set", "scene.end_time=0.005"})
+          .exit,
+      0);
+  EXPECT_TRUE(fs::exists(base_ / "results/couette/summary.json"));
+  const Outcome misspelt = run({"run", "couete"});
+  EXPECT_EQ(misspelt.exit, 2);
+  EXPECT_TRUE(misspelt.err.ends_with("did you mean 'couette'?\n")) << misspelt.err;
+}
+
 TEST_F(CommandTest, BadInputIsToldWithItsPlaceAndLeavesNothing) {
   const Outcome bad = run({"run", "tiny.toml", "--set", "body[0].law.rho_0=-1"});
   EXPECT_EQ(bad.exit, 2);
