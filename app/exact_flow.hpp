@@ -1,19 +1,20 @@
 #pragma once
 /// \file
-/// Flows of a Newtonian layer in a strip that is periodic along the flow, with closed forms
-/// (docs/physics.md, "Exact flows").
+/// Flows of a layer in a strip that is periodic along the flow, of which the exact solution is
+/// known (docs/physics.md, "Exact flows").
 
 #include "app/mpm_quantity.hpp"
 
 namespace repose::app {
 
-/// The closed form of the momentum (momentum_x) or the kinetic energy over time of the flow that a
+/// The exact momentum (momentum_x) or the kinetic energy over time of the flow that a
 /// scene sets up, as shares like those of its runs; absent for other quantities. The layer is the
 /// scene's only body.
 ///
 ///   couette         from rest between a fixed floor and a top that slides at V from t = 0 on,
 ///                   without gravity
 ///   inclined_layer  from rest on a fixed floor, with a free surface, pulled by g sin(tilt)
+///   bagnold         the same of μ(I) grains (grain_layer.hpp)
 ///
 /// Errors: InputError, key "chart.exact", where the scene sets up another flow.
 std::optional<Eigen::VectorXd> exact_shares(ExactFlow flow, const mpm::Scene& scene, Quantity q);

@@ -135,8 +135,7 @@ std::vector<bool> pareto_front(std::span<const SweepRun> runs, Quantity q,
 }
 
 std::string SweepReference::name(std::span<const SweepFamily> families) const {
-  if (exact)
-    return fmt::format("the closed form of {}", exact_flow_names[static_cast<std::size_t>(*exact)]);
+  if (exact) return fmt::format("the exact {}", exact_flow_names[static_cast<std::size_t>(*exact)]);
   return families[family].name();
 }
 

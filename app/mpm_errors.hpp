@@ -26,16 +26,16 @@ double common_bin(std::span<const SweepRun> runs);
 
 /// What the runs tend to as cells and steps shrink together.
 struct SweepReference {
-  std::optional<ExactFlow> exact;  ///< a closed form, and nothing is extrapolated
+  std::optional<ExactFlow> exact;  ///< an exact solution, and nothing is extrapolated
   std::size_t family = 0;          ///< of families_of(): the one it is extrapolated from
   std::array<double, 3> cells{};   ///< those that count [m]
   std::size_t steps = 0;           ///< the least number of Courant numbers that any has
   std::array<std::optional<calibration::Reference>, quantity_count> values;
-  /// "relaxed, cubic", or "the closed form of couette".
+  /// "relaxed, cubic", or "the exact couette".
   std::string name(std::span<const SweepFamily> families) const;
 };
-/// The closed form of a flow (exact_flow.hpp); absent as long as no run is done. InputError where
-/// the scene is another flow.
+/// The exact solution of a flow (exact_flow.hpp); absent as long as no run is done. InputError
+/// where the scene is another flow.
 std::optional<SweepReference> exact_reference(std::span<const SweepRun> runs, ExactFlow flow);
 /// From the family with the finest cells that has at least three sizes (of several, that of the
 /// first variant, transfer and kernel, then the first); absent if there is none.

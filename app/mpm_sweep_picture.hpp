@@ -26,8 +26,8 @@ Figure cost_figure(const std::vector<SweepSeries>& series, const std::string& na
 Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReference& reference,
                              const std::string& name);
 
-/// Of a flow with a closed form: momentum and kinetic energy over time, and their errors over the
-/// cell size.
+/// Of a flow with an exact solution: momentum and kinetic energy over time, and their errors over
+/// the cell size.
 Figure flow_figure(std::span<const SweepRun> runs, const SweepReference& reference,
                    const std::string& name);
 

@@ -13,9 +13,9 @@ enum class ChartKind : std::uint8_t { point, fit, mpm };
 /// Their names, in the same order.
 constexpr std::array<std::string_view, 3> chart_names{"point", "fit", "mpm"};
 
-/// Flows with a closed form, which then is the reference of a chart (exact_flow.hpp).
-enum class ExactFlow : std::uint8_t { couette, inclined_layer };
-constexpr std::array<std::string_view, 2> exact_flow_names{"couette", "inclined_layer"};
+/// Flows with an exact solution, which then is the reference of a chart (exact_flow.hpp).
+enum class ExactFlow : std::uint8_t { couette, inclined_layer, bagnold };
+constexpr std::array<std::string_view, 3> exact_flow_names{"couette", "inclined_layer", "bagnold"};
 
 /// A key of the scene that a sweep varies, and its values as TOML.
 struct VariedKey {

@@ -115,7 +115,7 @@ Figure work_precision_figure(std::span<const SweepRun> runs, const SweepReferenc
 Figure flow_figure(std::span<const SweepRun> runs, const SweepReference& reference,
                    const std::string& name) {
   const std::vector<SweepFamily> families = families_of(runs);
-  Figure figure("A flow against its closed form",
+  Figure figure("A flow against its exact solution",
                 name +
                     "; black: exact; lines: the longest step of the first method, from coarse "
                     "cells to fine");
