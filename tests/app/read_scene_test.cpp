@@ -448,7 +448,7 @@ TEST(ShippedScenes, are_sound) {
     const auto n = mpm::point_lattice(scene.scene, scene.scene.bodies.at(0));
     EXPECT_EQ(n[0] * n[1], 8192);
   }
-  EXPECT_EQ(count, 24);
+  EXPECT_EQ(count, 25);
 }
 
 }  // namespace
