@@ -17,8 +17,6 @@ constexpr double model_runs = 3.0;
 constexpr double least_shown = 0.1;
 /// Pairs of sizes that show a bias: closer ones show their irregularity, others are far from fine.
 constexpr double least_ratio = 1.4, largest_ratio = 4.5;
-/// x from which on higher powers count.
-constexpr double onset = 0.05;
 /// Motions are not told apart below.
 constexpr double least_motion = 0.02;
 
@@ -34,9 +32,6 @@ double ErrorModel::expected_bias(double x, double scene_motion) const {
   return bias * std::pow(std::max(least_motion, scene_motion), motion_order) * std::pow(x, order);
 }
 double ErrorModel::expected_scatter(double x) const { return scatter * std::pow(x, scatter_order); }
-double ErrorModel::irregularity_at(double x) const {
-  return irregularity * std::sqrt(1.0 + squared(x / onset));
-}
 
 void Convergence::add(double h, VectorXd value) {
   const auto same = std::find_if(levels_.begin(), levels_.end(), [&](const Resolution& level) {
@@ -76,9 +71,8 @@ double Convergence::bias_at(double h) const {
     if (ratio < least_ratio || ratio > largest_ratio) continue;
     const double x = std::pow(ratio, model_.order);
     const double change = squared(relative_distance(c.mean(), f.mean()));
-    squares +=
-        std::max(0.0, change - noise(c) - noise(f)) /
-        (squared(x - 1.0) + squared(irregularity_at(c.h) * x) + squared(irregularity_at(f.h)));
+    squares += std::max(0.0, change - noise(c) - noise(f)) /
+               (squared(x - 1.0) + squared(model_.irregularity) * (x * x + 1.0));
     count += 1.0;
   }
   const double expected = model_.expected_bias(f.h / length_, motion());
@@ -97,8 +91,7 @@ Convergence::Weighted Convergence::best_weights(const std::vector<Level>& levels
   for (Eigen::Index k = 0; k < count; ++k) {
     const Level& level = levels[static_cast<std::size_t>(k)];
     x[k] = std::pow(level.h / h_f, model_.order);
-    s_2[k] =
-        squared(irregularity_at(level.h) * B * x[k]) + squared(scatter_at(level.h)) / level.runs;
+    s_2[k] = squared(model_.irregularity * B * x[k]) + squared(scatter_at(level.h)) / level.runs;
   }
   const double common = B * B * (x / s_2).sum() / (1.0 + B * B * (x.square() / s_2).sum());
   const ArrayXd w = (1.0 - common * x) / s_2;
@@ -123,29 +116,21 @@ Estimate Convergence::estimate() const {
 
 namespace {
 
-/// How far the sizes' errors over x^order, x = h/length, are from their mean, over that mean;
-/// coarse sizes count less by as much as they are expected to be farther.
+/// How far the sizes' errors over x^order, x = h/length, are from their mean, over that mean.
 double shown_irregularity(std::span<const Resolution> levels, const VectorXd& tends_to,
                           double least, double length, double order) {
   std::vector<VectorXd> slopes;
-  std::vector<double> weights;
   const double size = tends_to.lpNorm<1>();
   for (const Resolution& level : levels) {
     const VectorXd error = (level.mean() - tends_to) / size;
     if (error.lpNorm<1>() < least) continue;
     slopes.push_back(error * std::pow(length / level.h, order));
-    weights.push_back(1.0 / (1.0 + squared(level.h / length / onset)));
   }
   if (slopes.size() < 3) return std::nan("");
   VectorXd mean = VectorXd::Zero(tends_to.size());
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t k = 0; k < slopes.size(); ++k) {
-    mean += weights[k] * slopes[k];
-    sum += weights[k];
-  }
-  mean /= sum;
-  for (std::size_t k = 0; k < slopes.size(); ++k)
-    squares += weights[k] * squared((slopes[k] - mean).lpNorm<1>());
+  double squares = 0.0;
+  for (const VectorXd& slope : slopes) mean += slope / static_cast<double>(slopes.size());
+  for (const VectorXd& slope : slopes) squares += squared((slope - mean).lpNorm<1>());
   const double apart = std::sqrt(squares / static_cast<double>(slopes.size() - 1));
   return apart / std::hypot(mean.lpNorm<1>(), apart);
 }

@@ -19,7 +19,7 @@ struct ErrorModel {
   double order = 1.0;         ///< p
   double motion_order = 0.0;  ///< γ
   double motion = 1.0;        ///< m of a typical scene, until a run tells
-  double irregularity = 0.0;  ///< how far one size's bias is off c·x^p, over it, with fine cells
+  double irregularity = 0.0;  ///< how far one size's bias is off c·x^p, over it
   double scatter = 0.0;       ///< of one run, from a step to one close by: scatter·x^scatter_order
   double scatter_order = 0.0;
   double caution = 1.0;  ///< the error bar over the expected error E of an estimate
@@ -27,9 +27,6 @@ struct ErrorModel {
   /// With a scene's own motion; less than 0.02 counts as 0.02.
   double expected_bias(double x, double scene_motion) const;
   double expected_scatter(double x) const;
-  /// With coarse cells what scales with higher powers of x counts as well:
-  /// irregularity·√(1 + (x/0.05)²).
-  double irregularity_at(double x) const;
 };
 
 /// An estimate of what the runs tend to.
@@ -47,7 +44,7 @@ struct Level {
 
 /// The model together with the runs so far. With x_k = (h_k/h_f)^p, f the finest cells, the mean of
 /// n_k runs is taken to be
-///     u_k = u* + B x_k d + δ_k,   |δ_k|² ~ s_k² = (irregularity_k B x_k)² + σ_k²/n_k,
+///     u_k = u* + B x_k d + δ_k,   |δ_k|² ~ s_k² = (irregularity B x_k)² + σ_k²/n_k,
 /// one direction d for all sizes and δ_k independent. The estimate û = Σ a_k u_k, Σ a_k = 1, with
 /// the least expected square of the error,
 ///     E² = B² (Σ a_k x_k)² + Σ a_k² s_k²,
@@ -55,7 +52,7 @@ struct Level {
 /// where the sizes err regularly, the finest run alone where they do not, and a mean of many runs
 /// where scatter rules. B² is the geometric mean of the model's, which counts as one pair, and of
 /// the mean of what the pairs of the finest size f with a coarser one k (1.4 ≤ h_k/h_f ≤ 4.5) show,
-///     (|u_k − u_f|² − σ_k²/n_k − σ_f²/n_f)/((x_k − 1)² + (irregularity_k x_k)² + irregularity_f²);
+///     (|u_k − u_f|² − σ_k²/n_k − σ_f²/n_f)/((x_k − 1)² + irregularity² (x_k² + 1));
 /// σ is that of the model, scaled by the scatter seen. The error bar is caution·E.
 class Convergence {
  public:
@@ -83,7 +80,6 @@ class Convergence {
   /// m of the finest run so far.
   double motion() const;
   double scatter_at(double h) const;
-  double irregularity_at(double h) const { return model_.irregularity_at(h / length_); }
 
   ErrorModel model_;
   double length_;
