@@ -22,13 +22,13 @@ struct FrameView {
   /// A vector. What is empty (z of the plane) is zero.
   struct Vector {
     std::string name;
-    std::span<const double> x, y, z;
+    std::span<const double> x, y, z{};
   };
   /// A symmetric tensor; ParaView gets its six components in the order that it names itself: XX YY
   /// ZZ XY YZ XZ. What is empty (the last two in plane strain) is zero.
   struct Tensor {
     std::string name;
-    std::span<const double> xx, yy, zz, xy, yz, zx;
+    std::span<const double> xx, yy, zz, xy, yz{}, zx{};
   };
   struct IntField {
     std::string name;

@@ -67,7 +67,8 @@ TEST(FlowCurve, IntervalsHoldTheTruthOver40DrawsOfOnePercentNoise) {
 TEST(FlowCurve, ANoiseInSharesOfZeroNeedsAnAbsolutePart) {
   Channel channel;
   channel.name = "mu";
-  channel.observed = Eigen::Vector3d(0.0, 0.4, 0.3);
+  channel.observed.resize(3);
+  channel.observed << 0.0, 0.4, 0.3;
   EXPECT_THROW(declare_noise(channel, 0.0, 0.01), InputError);
   declare_noise(channel, 0.003, 0.01);
   EXPECT_DOUBLE_EQ(scale_of(channel, 0), 0.003);

@@ -33,7 +33,7 @@ class LawParameters : public ::testing::TestWithParam<std::size_t> {
   const LawInfo& law() const { return all_laws()[GetParam()]; }
   std::vector<LawExample> examples() const { return examples_of(law()); }
   static std::string unit(const ParamInfo& info) {
-    return info.unit == "-" ? "" : " " + std::string(info.unit);
+    return info.unit == "-" ? "" : std::string(" ").append(info.unit);
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, LawParameters,
