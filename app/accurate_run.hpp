@@ -5,15 +5,15 @@
 
 #include <optional>
 
-#include "app/exit_code.hpp"
-#include "app/mpm_quantity.hpp"
+#include "io/exit_code.hpp"
+#include "study/accuracy/quantity.hpp"
 
 namespace repose::app {
 
 struct AccuracyRequest {
-  SceneFile file;
+  input::SceneFile file;
   std::string origin;  ///< origin_line()
-  Quantity quantity = Quantity::profile;
+  study::Quantity quantity = study::Quantity::profile;
   double target = 0.0;           ///< relative error bar
   std::optional<double> budget;  ///< CPU seconds
   std::filesystem::path folder;  ///< for the result
@@ -28,6 +28,6 @@ struct AccuracyRequest {
 /// accuracy.svg, advised.toml (the scene with the finest settings used) and summary.json. Throws
 /// BadInput before anything is run where the target cannot be met within the budget; returns
 /// numerical_failure where the runs turn out not to meet it, with what they give. Errors: IoError.
-ExitCode run_to_accuracy(const AccuracyRequest& request);
+io::ExitCode run_to_accuracy(const AccuracyRequest& request);
 
 }  // namespace repose::app

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/command.hpp"
-#include "app/input_file.hpp"
-#include "mpm/atomic_file.hpp"
+#include "input/input_file.hpp"
+#include "io/atomic_file.hpp"
 #include "repose_version.hpp"
 
 namespace repose::app {
@@ -30,7 +30,7 @@ constexpr const char* examples =
     "`repose VERB --help` tells about one verb.";
 
 /// All complaints go here, one per line, and with --json to the standard output as well.
-ExitCode complain(ExitCode code, const std::vector<std::string>& messages, bool json) {
+io::ExitCode complain(io::ExitCode code, const std::vector<std::string>& messages, bool json) {
   for (const std::string& message : messages) fmt::print(stderr, "{}\n", message);
   if (json)
     fmt::print("{}\n",
@@ -40,20 +40,20 @@ ExitCode complain(ExitCode code, const std::vector<std::string>& messages, bool 
   return code;
 }
 
-ExitCode run(const Command& command) {
+io::ExitCode run(const Command& command) {
   const bool json = command.options->json;
   try {
     return command.run();
-  } catch (const BadInput& error) {
-    return complain(ExitCode::bad_input, error.problems(), json);
-  } catch (const mpm::IoError& error) {
-    return complain(ExitCode::io_error, {error.what()}, json);
+  } catch (const input::BadInput& error) {
+    return complain(io::ExitCode::bad_input, error.problems(), json);
+  } catch (const io::IoError& error) {
+    return complain(io::ExitCode::io_error, {error.what()}, json);
   } catch (const std::bad_alloc&) {
     return complain(
-        ExitCode::bad_input,
+        io::ExitCode::bad_input,
         {"repose: not enough memory; a larger grid.h or fewer points_per_cell need less"}, json);
   } catch (const std::exception& error) {
-    return complain(ExitCode::internal_error,
+    return complain(io::ExitCode::internal_error,
                     {fmt::format("repose {}: internal error: {}", version_string, error.what())},
                     json);
   }
@@ -72,17 +72,17 @@ std::string suggestion(std::string_view word, const CLI::App& root, const CLI::A
     for (const CLI::App* app : root.get_subcommands(nullptr)) known.push_back(app->get_name());
   }
   const std::vector<std::string_view> views(known.begin(), known.end());
-  const std::string near = closest(word, views);
+  const std::string near = input::closest(word, views);
   return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
 }
 
-ExitCode misuse(const std::string& message, const CLI::App* verb) {
+io::ExitCode misuse(const std::string& message, const CLI::App* verb) {
   fmt::print(stderr, "repose: {}\n`repose {}--help` shows how it goes.\n", message,
              verb == nullptr ? "" : verb->get_name() + " ");
-  return ExitCode::bad_input;
+  return io::ExitCode::bad_input;
 }
 
-ExitCode parse_and_run(std::span<const char* const> arguments) {
+io::ExitCode parse_and_run(std::span<const char* const> arguments) {
   CLI::App root(overview, "repose");
   root.set_help_flag("-h,--help", "Show this and exit");
   root.set_version_flag("--version", std::string("repose ") + version_string);
@@ -95,7 +95,7 @@ ExitCode parse_and_run(std::span<const char* const> arguments) {
 
   if (arguments.size() < 2) {
     fmt::print(stderr, "{}", root.help());
-    return ExitCode::bad_input;
+    return io::ExitCode::bad_input;
   }
   const std::string_view first = arguments[1];
   const auto is_first = [&](const Command& c) { return c.verb->get_name() == first; };
@@ -106,11 +106,11 @@ ExitCode parse_and_run(std::span<const char* const> arguments) {
     root.parse(static_cast<int>(arguments.size()), arguments.data());
   } catch (const CLI::CallForVersion& version) {
     fmt::print("{}\n", version.what());
-    return ExitCode::done;
+    return io::ExitCode::done;
   } catch (const CLI::CallForHelp&) {
     const auto chosen = root.get_subcommands();
     fmt::print("{}", chosen.empty() ? root.help() : chosen.front()->help("repose"));
-    return ExitCode::done;
+    return io::ExitCode::done;
   } catch (const CLI::ParseError& error) {
     const auto chosen = root.get_subcommands();
     const CLI::App* verb = chosen.empty() ? nullptr : chosen.front();
@@ -123,7 +123,7 @@ ExitCode parse_and_run(std::span<const char* const> arguments) {
   }
   for (const Command& command : commands)
     if (command.verb->parsed()) return run(command);
-  return ExitCode::bad_input;
+  return io::ExitCode::bad_input;
 }
 
 }  // namespace
@@ -228,7 +228,7 @@ int run_command_line(int argc, const char* const* argv) {
     return static_cast<int>(parse_and_run({argv, static_cast<std::size_t>(argc)}));
   } catch (const std::exception& error) {
     fmt::print(stderr, "repose {}: internal error: {}\n", version_string, error.what());
-    return static_cast<int>(ExitCode::internal_error);
+    return static_cast<int>(io::ExitCode::internal_error);
   }
 }
 

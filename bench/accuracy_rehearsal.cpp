@@ -11,25 +11,25 @@
 
 #include <fmt/format.h>
 
-#include "app/accuracy_table.hpp"
-#include "app/mpm_errors.hpp"
+#include "study/accuracy/accuracy_table.hpp"
+#include "study/accuracy/errors.hpp"
 
-namespace repose::app {
+namespace repose::study {
 namespace {
 
 namespace fs = std::filesystem;
-using calibration::Convergence;
-using calibration::ErrorModel;
-using calibration::Level;
-using calibration::Outcome;
-using calibration::ShownErrors;
 using Eigen::VectorXd;
+using study::Convergence;
+using study::ErrorModel;
+using study::Level;
+using study::Outcome;
+using study::ShownErrors;
 
 constexpr std::array targets{0.02, 0.03, 0.04, 0.05, 0.06, 0.08};
 
 struct Chart {
   std::string name;
-  SceneFile scene;
+  input::SceneFile scene;
   std::vector<SweepRun> runs;
   std::vector<SweepFamily> families;
   SweepReference reference;
@@ -39,9 +39,9 @@ struct Chart {
 };
 
 Chart read(const fs::path& folder) {
-  InputFile file = InputFile::read(folder / "input.toml");
-  const ChartTable table = read_chart(file);
-  Chart chart{folder.filename(), read_scene(file), {}, {}, {}, {}};
+  input::InputFile file = input::InputFile::read(folder / "input.toml");
+  const input::ChartTable table = input::read_chart(file);
+  Chart chart{folder.filename(), input::read_scene(file), {}, {}, {}, {}};
   chart.runs = runs_of(chart.scene, table.sweep);
   for (SweepRun& run : chart.runs) carry_out(run, folder / "runs", 1, false);
   return chart;
@@ -64,7 +64,7 @@ Made made_with(const Chart& chart, const Candidate& candidate, Quantity q) {
       made.sizes.push_back(run->scene().h);
       made.point_steps.push_back(run->point_steps() * run->scene().courant / candidate.courant);
       made.values.push_back(shares_of(*run, q, chart.bin));
-      made.errors.push_back(calibration::relative_distance(made.values.back(), limit));
+      made.errors.push_back(study::relative_distance(made.values.back(), limit));
     }
     made.start = start_of(*family.runs.front(), q, chart.bin);
   }
@@ -92,8 +92,8 @@ ErrorModel model_without(const Chart& own, const std::vector<Chart>& charts,
       if (chart.law() == own.law()) of_law.push_back(of_all.back());
     }
   }
-  ErrorModel model = calibration::pooled_model(of_law, candidate.model);
-  model.irregularity = calibration::pooled_model(of_all, candidate.model).irregularity;
+  ErrorModel model = study::pooled_model(of_law, candidate.model);
+  model.irregularity = study::pooled_model(of_all, candidate.model).irregularity;
   model.scatter = candidate.model.scatter;
   return model;
 }
@@ -117,8 +117,8 @@ std::optional<Answer> answer_for(const Chart& chart, const std::vector<Chart>& c
   for (const Candidate& candidate : candidates_for(chart.scene.scene, q, measured)) {
     const ErrorModel its_model = model_without(chart, charts, candidate, q);
     Made its = made_with(chart, candidate, q);
-    const calibration::Plan plan = calibration::cheapest_plan(
-        Convergence(its_model, length), its.sizes, its.point_steps, target, HUGE_VAL);
+    const study::Plan plan = study::cheapest_plan(Convergence(its_model, length), its.sizes,
+                                                  its.point_steps, target, HUGE_VAL);
     const bool meets = plan.error <= target;
     const std::pair rank(!meets, meets ? plan.cost : plan.error);
     cheapest = std::min(cheapest, cheapest_alone(its, target));
@@ -130,7 +130,7 @@ std::optional<Answer> answer_for(const Chart& chart, const std::vector<Chart>& c
   Convergence so_far(*model, length);
   if (made.start) so_far.starts_from(*made.start);
   double cost = 0.0;
-  const Outcome outcome = calibration::run_to_target(
+  const Outcome outcome = study::run_to_target(
       so_far, made.sizes, made.point_steps, target, HUGE_VAL,
       [&](const Level& next) -> std::optional<VectorXd> {
         if (next.runs > 0) return {};  // every size has been run once
@@ -140,7 +140,7 @@ std::optional<Answer> answer_for(const Chart& chart, const std::vector<Chart>& c
         return made.values[k];
       });
   if (outcome == Outcome::stopped) return {};
-  const double error = calibration::relative_distance(so_far.estimate().value, reference->value);
+  const double error = study::relative_distance(so_far.estimate().value, reference->value);
   return Answer{outcome == Outcome::met, error, cost, cheapest};
 }
 
@@ -205,12 +205,12 @@ int rehearse(const fs::path& results) {
 }
 
 }  // namespace
-}  // namespace repose::app
+}  // namespace repose::study
 
 int main(int count, char** words) {
   if (count != 2) {
     fmt::print(stderr, "bench_accuracy_rehearsal RESULTS\n");
     return 2;
   }
-  return repose::app::rehearse(words[1]);
+  return repose::study::rehearse(words[1]);
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "mpm/simulation_impl.hpp"
+#include "mpm/step/simulation_impl.hpp"
 
 namespace repose::mpm {
 namespace {

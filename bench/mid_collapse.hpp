@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "mpm/scene.hpp"
+#include "mpm/scene/scene.hpp"
 
 namespace repose::mpm {
 

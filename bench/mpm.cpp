@@ -12,10 +12,10 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include "app/read_scene.hpp"
 #include "bench/mid_collapse.hpp"
 #include "bench/mpm_cost.hpp"
 #include "bench/roofline.hpp"
+#include "input/read_scene.hpp"
 
 namespace repose::bench {
 namespace {
@@ -38,9 +38,9 @@ const mpm::Scene& scene_of(const LawCase& law) {
   static std::map<std::string_view, mpm::Scene> scenes;
   const auto found = scenes.find(law.name);
   if (found != scenes.end()) return found->second;
-  app::InputFile file =
-      app::InputFile::read(fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, law.scene));
-  return scenes.emplace(law.name, app::read_scene(file).scene).first->second;
+  input::InputFile file =
+      input::InputFile::read(fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, law.scene));
+  return scenes.emplace(law.name, input::read_scene(file).scene).first->second;
 }
 
 void whole_steps(benchmark::State& timing, const LawCase* law, mpm::Kernel kernel,

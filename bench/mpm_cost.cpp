@@ -3,7 +3,7 @@
 #include "bench/counted.hpp"
 #include "models/all_laws.hpp"
 #include "models/objective.hpp"
-#include "mpm/grid.hpp"
+#include "mpm/grid/grid.hpp"
 
 namespace repose::bench {
 namespace {
@@ -29,8 +29,8 @@ std::optional<TransferKind> kind_of(std::string_view transfer) {
 
 }  // namespace
 
-// Operations of one point-step: what the formulas of mpm/transfer.hpp, separable in x and y, take
-// with every common factor taken out once. n nodes lie in a stencil row, n² in a stencil. Idle
+// Operations of one point-step: what the formulas of mpm/step/transfer.hpp, separable in x and y,
+// take with every common factor taken out once. n nodes lie in a stencil row, n² in a stencil. Idle
 // lanes, addresses, comparisons and copies do not count; + − × ÷ √ count as 1 each.
 //
 //   stage                              operations                       cubic   quadratic

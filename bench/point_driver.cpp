@@ -6,7 +6,7 @@
 #include "models/all_laws.hpp"
 #include "models/registry.hpp"
 #include "models/scalar.hpp"
-#include "pointdriver/sensitivity.hpp"
+#include "pointdriver/integrate/sensitivity.hpp"
 #include "tests/pointdriver/exact_solutions.hpp"
 
 namespace {

@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
-#include "app/read_scene.hpp"
 #include "bench/mid_collapse.hpp"
+#include "input/read_scene.hpp"
 
 namespace {
 
@@ -31,9 +31,9 @@ double time_of(MidCollapse& collapse, int steps) {
 }
 
 void compare(const char* scene_name, int rounds) {
-  repose::app::InputFile file = repose::app::InputFile::read(
+  repose::input::InputFile file = repose::input::InputFile::read(
       fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, scene_name));
-  const repose::mpm::Scene scene = repose::app::read_scene(file).scene;
+  const repose::mpm::Scene scene = repose::input::read_scene(file).scene;
   const auto with_threads = [&](int threads) {
     return MidCollapse(scene, repose::mpm::Kernel::cubic, repose::mpm::Transfer::relaxed, division,
                        threads);

@@ -1,6 +1,6 @@
 #include "calibration/path_derivatives.hpp"
 
-#include "pointdriver/start.hpp"
+#include "pointdriver/integrate/start.hpp"
 
 namespace repose::calibration {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "pointdriver/simulate.hpp"
+#include "pointdriver/integrate/simulate.hpp"
 
 namespace repose::calibration {
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "calibration/simulator.hpp"
-#include "pointdriver/simulate.hpp"
+#include "pointdriver/integrate/simulate.hpp"
 
 namespace repose::calibration {
 

@@ -16,8 +16,8 @@ if(hash)
 endif()
 
 # what a run's result depends on, beside its input
-file(GLOB sources ${SOURCE_DIR}/models/*.[ch]pp ${SOURCE_DIR}/mpm/*.[ch]pp
-     ${SOURCE_DIR}/app/run_scene.cpp ${SOURCE_DIR}/app/run_record.cpp
+file(GLOB_RECURSE sources ${SOURCE_DIR}/models/*.[ch]pp ${SOURCE_DIR}/mpm/*.[ch]pp
+     ${SOURCE_DIR}/study/run/*.[ch]pp
      ${SOURCE_DIR}/cmake/Dependencies.cmake ${SOURCE_DIR}/cmake/Flags.cmake)
 set(digests "${COMPILED}")
 foreach(source IN LISTS sources)

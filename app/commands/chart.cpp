@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "app/read_chart.hpp"
-#include "app/read_chart_set.hpp"
+#include "input/read_chart.hpp"
+#include "input/read_chart_set.hpp"
 
 namespace repose::app {
 namespace {
@@ -54,66 +54,71 @@ constexpr std::string_view all = "all";
 
 /// Which chart: by its name, or by the [chart] table of a file, which then stands in for FILE;
 /// absent: a set of charts.
-std::optional<ChartKind> choose(ChartArguments& arguments) {
+std::optional<input::ChartKind> choose(ChartArguments& arguments) {
   const auto no_second_file = [&] {
     if (!arguments.file.empty())
-      throw BadInput({fmt::format("repose chart {} takes no second file", arguments.what)});
+      throw input::BadInput({fmt::format("repose chart {} takes no second file", arguments.what)});
   };
   if (arguments.what == all) {
     no_second_file();
     return {};
   }
-  const auto named = std::find(chart_names.begin(), chart_names.end(), arguments.what);
-  if (named != chart_names.end()) return static_cast<ChartKind>(named - chart_names.begin());
+  const auto named =
+      std::find(input::chart_names.begin(), input::chart_names.end(), arguments.what);
+  if (named != input::chart_names.end())
+    return static_cast<input::ChartKind>(named - input::chart_names.begin());
   if (!arguments.what.ends_with(".toml")) {
-    std::vector<std::string_view> names(chart_names.begin(), chart_names.end());
+    std::vector<std::string_view> names(input::chart_names.begin(), input::chart_names.end());
     names.push_back(all);
-    const std::string near = closest(arguments.what, names);
-    throw BadInput({fmt::format(
+    const std::string near = input::closest(arguments.what, names);
+    throw input::BadInput({fmt::format(
         "there is no chart '{}': {}, or a .toml file with a [chart] table{}", arguments.what,
         fmt::join(names, ", "), near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
   }
   no_second_file();
   arguments.file = arguments.what;
-  InputFile input = InputFile::read(arguments.what, arguments.common.sets);
-  if (is_chart_set(input)) return {};
-  const ChartTable chart = read_chart(input);
+  input::InputFile input = input::InputFile::read(arguments.what, arguments.common.sets);
+  if (input::is_chart_set(input)) return {};
+  const input::ChartTable chart = input::read_chart(input);
   if (!chart.kind)
-    throw BadInput({fmt::format("{}: [chart] needs kind = \"{}\"", to_string(input.origin("chart")),
-                                fmt::join(chart_names, "\" or \""))});
+    throw input::BadInput(
+        {fmt::format("{}: [chart] needs kind = \"{}\"", to_string(input.origin("chart")),
+                     fmt::join(input::chart_names, "\" or \""))});
   return *chart.kind;
 }
 
-ExitCode run_chart(ChartArguments arguments) {
-  const std::optional<ChartKind> kind = choose(arguments);
+io::ExitCode run_chart(ChartArguments arguments) {
+  const std::optional<input::ChartKind> kind = choose(arguments);
   CommonOptions& common = arguments.common;
   for (std::size_t i = 0; i < list_options.size(); ++i) {
     if (arguments.lists[i].empty()) continue;
-    if (kind != ChartKind::mpm)
-      throw BadInput({fmt::format("--{} belongs to repose chart mpm", list_options[i].name)});
+    if (kind != input::ChartKind::mpm)
+      throw input::BadInput(
+          {fmt::format("--{} belongs to repose chart mpm", list_options[i].name)});
     common.sets.push_back(override_of(list_options[i], arguments.lists[i]));
   }
   if (!kind) return chart_set(common, arguments.file, arguments.quick);
   if (arguments.evaluations) {
-    if (kind != ChartKind::fit) throw BadInput({"--evaluations belongs to repose chart fit"});
+    if (kind != input::ChartKind::fit)
+      throw input::BadInput({"--evaluations belongs to repose chart fit"});
     common.sets.push_back(fmt::format("chart.evaluations={}", *arguments.evaluations));
   }
   switch (*kind) {
-    case ChartKind::mpm:
+    case input::ChartKind::mpm:
       return told(chart_mpm(common, arguments.file, arguments.quick), common);
-    case ChartKind::fit:
+    case input::ChartKind::fit:
       return told(chart_fit(common, arguments.file, arguments.quick), common);
-    case ChartKind::point:
+    case input::ChartKind::point:
       break;
   }
   if (!arguments.file.empty() && arguments.file != arguments.what)
-    throw BadInput({"repose chart point takes no file; it charts its own paths"});
+    throw input::BadInput({"repose chart point takes no file; it charts its own paths"});
   return told(chart_point(common, arguments.file, arguments.quick), common);
 }
 
 }  // namespace
 
-ExitCode told(const ChartEnd& end, const CommonOptions& options) {
+io::ExitCode told(const ChartEnd& end, const CommonOptions& options) {
   if (end.kept && !options.quiet && !options.json)
     fmt::print("finished already from the same input; without --resume it is made again\n");
   return end.code;

@@ -9,11 +9,11 @@
 namespace repose::app {
 
 struct ChartEnd {
-  ExitCode code = ExitCode::done;
+  io::ExitCode code = io::ExitCode::done;
   bool kept = false;  ///< the result was there already
 };
 /// Says so where a chart was kept; returns its code.
-ExitCode told(const ChartEnd& end, const CommonOptions& options);
+io::ExitCode told(const ChartEnd& end, const CommonOptions& options);
 
 /// Work-precision of the point driver's integrators, one-step error maps and the convergence of the
 /// laws' tangents. `file` has a [chart] table or is empty; quick: few settings, coarse maps.
@@ -37,7 +37,7 @@ ChartEnd stability_maps(const CommonOptions& options, const std::string& file, b
 /// Every chart of a set (read_chart_set.hpp), each in a sub-folder, and a page of them all that
 /// grows meanwhile. `file` empty: the shipped set. A chart that fails is told and the others go on;
 /// the exit code is then that of the first that failed.
-ExitCode chart_set(const CommonOptions& options, const std::string& file, bool quick);
+io::ExitCode chart_set(const CommonOptions& options, const std::string& file, bool quick);
 
 /// Reads a set as chart_set would, and returns a line per chart. Errors: BadInput.
 std::vector<std::string> check_chart_set(const CommonOptions& options, const std::string& file);

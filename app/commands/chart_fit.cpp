@@ -6,15 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
-#include "app/finished_result.hpp"
-#include "app/interrupt.hpp"
-#include "app/plot/figure.hpp"
-#include "app/plot/gnuplot.hpp"
-#include "app/read_chart.hpp"
-#include "app/read_fit.hpp"
-#include "app/result_folder.hpp"
-#include "calibration/twin.hpp"
+#include "input/read_chart.hpp"
+#include "input/read_fit.hpp"
+#include "io/interrupt.hpp"
+#include "io/result_folder.hpp"
+#include "report/plot/figure.hpp"
+#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
+#include "study/fit/twin.hpp"
+#include "study/run/finished_result.hpp"
 
 namespace repose::app {
 namespace {
@@ -45,14 +45,14 @@ struct Task {
 /// Five parameters of London clay from three tests without noise: the least objective is 0. The
 /// start lies off every symmetry of the cube.
 Task twin_task() {
-  const calibration::Twin twin = calibration::cam_clay_twin();
-  Problem problem = calibration::twin_problem(twin, calibration::cam_clay_tests());
+  const study::Twin twin = study::cam_clay_twin();
+  Problem problem = study::twin_problem(twin, study::cam_clay_tests());
   const auto n = problem.parameters();
   return {"five parameters of Cam-Clay, three tests, no noise", problem,
           Eigen::VectorXd::LinSpaced(n, 0.3, 0.7), ""};
 }
 
-Task task_of(const FitFile& file) {
+Task task_of(const input::FitFile& file) {
   Problem problem(calibration::ParameterSpace(file.free), file.targets, file.balance);
   const Eigen::VectorXd start = problem.space().start();
   return {file.name, std::move(problem), start, file.resolved};
@@ -129,8 +129,8 @@ std::string_view group_of(const Algorithm& a) {
   return a.gradient ? "local, with gradients" : "local, without gradients";
 }
 
-Figure figure_of(const std::vector<Run>& runs, const std::string& task, double first) {
-  Figure figure("Algorithms of a fit", task + "; best objective so far over the first one");
+report::Figure figure_of(const std::vector<Run>& runs, const std::string& task, double first) {
+  report::Figure figure("Algorithms of a fit", task + "; best objective so far over the first one");
   figure.columns = 2;
   std::vector<std::string_view> groups;
   for (const Run& run : runs)
@@ -139,11 +139,11 @@ Figure figure_of(const std::vector<Run>& runs, const std::string& task, double f
       groups.push_back(g);
   for (const std::string_view group : groups)
     for (const bool over_time : {false, true}) {
-      Axes& axes = figure.add_axes();
+      report::Axes& axes = figure.add_axes();
       axes.title = std::string(group);
       axes.x = {over_time ? "time (ms)" : "trials, with or without gradient",
-                AxisScale::logarithmic};
-      axes.y = {"objective / first", AxisScale::logarithmic};
+                report::AxisScale::logarithmic};
+      axes.y = {"objective / first", report::AxisScale::logarithmic};
       std::size_t colour = 0;
       for (const Run& run : runs) {
         if (group_of(run.algorithm) != group) continue;
@@ -153,8 +153,8 @@ Figure figure_of(const std::vector<Run>& runs, const std::string& task, double f
           y.push_back(std::max(p.objective / first, floor_of_chart));
         }
         if (x.empty()) continue;
-        Style style;
-        style.colour = cycle_colour(colour++);
+        report::Style style;
+        style.colour = report::cycle_colour(colour++);
         axes.line(std::string(run.algorithm.name), x, y, style);
       }
     }
@@ -164,11 +164,11 @@ Figure figure_of(const std::vector<Run>& runs, const std::string& task, double f
 }  // namespace
 
 ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool quick) {
-  const ResultFolder folder(options.output.empty() ? ResultFolder::default_path("chart_fit")
-                                                   : std::filesystem::path(options.output));
-  InputFile given = file.empty() ? InputFile::parse("", "chart", options.sets)
-                                 : InputFile::read(file, options.sets);
-  const ChartTable chart = read_chart(given);
+  const io::ResultFolder folder(options.output.empty() ? io::ResultFolder::default_path("chart_fit")
+                                                       : std::filesystem::path(options.output));
+  input::InputFile given = file.empty() ? input::InputFile::parse("", "chart", options.sets)
+                                        : input::InputFile::read(file, options.sets);
+  const input::ChartTable chart = input::read_chart(given);
   // a chart of the twin leaves nothing but the table in its input.toml
   const bool twin = file.empty() || !given.root().contains("fit");
   if (!twin)  // read_fit() looks at the other tables
@@ -180,15 +180,15 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
   settings.max_evaluations = chart.evaluations.value_or(quick || chart.quick ? 200 : 2000);
   settings.x_tolerance = 1e-12;
   if (seed != 0) settings.seed = seed;
-  Task task =
-      twin ? twin_task() : task_of(read_fit(file, options.sets, seed, folder.path() / "runs"));
+  Task task = twin ? twin_task()
+                   : task_of(input::read_fit(file, options.sets, seed, folder.path() / "runs"));
   const std::string input =
       fmt::format("# The input of this result, by repose {}.\n{}{}", version_string, task.input,
-                  chart_text(settings.max_evaluations, settings.seed));
-  if (options.resume && is_finished(folder, input)) return {ExitCode::done, true};
+                  input::chart_text(settings.max_evaluations, settings.seed));
+  if (options.resume && study::is_finished(folder, input)) return {io::ExitCode::done, true};
   folder.remove_old_outputs();
   folder.write_file("input.toml", input);
-  const InterruptGuard interrupt;
+  const io::InterruptGuard interrupt;
   task.problem.interrupt_by([&] { return interrupt.requested(); });
   const double first = first_objective(task);
 
@@ -202,7 +202,7 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
   folder.write_file("table.csv", table_csv(runs, first));
   try {
     figure_of(runs, task.name, first).render_svg(folder.file("chart.svg"));
-  } catch (const PlotError& error) {
+  } catch (const report::PlotError& error) {
     fmt::print(stderr, "warning: no chart.svg: {}\n", error.what());
   }
   const std::string status = interrupt.requested() ? "interrupted" : "done";
@@ -218,7 +218,7 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
         "{}, objective over the first one and the trials it took:\n{}{}: chart.csv, "
         "table.csv, chart.svg\n",
         task.name, table_text(runs, first), folder.path().string());
-  return {interrupt.requested() ? ExitCode::interrupted : ExitCode::done};
+  return {interrupt.requested() ? io::ExitCode::interrupted : io::ExitCode::done};
 }
 
 }  // namespace repose::app

@@ -5,15 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
-#include "app/finished_result.hpp"
-#include "app/interrupt.hpp"
-#include "app/plot/figure.hpp"
-#include "app/plot/gnuplot.hpp"
-#include "app/read_chart.hpp"
-#include "app/result_folder.hpp"
-#include "pointdriver/tangent_convergence.hpp"
-#include "pointdriver/work_precision.hpp"
+#include "input/read_chart.hpp"
+#include "io/interrupt.hpp"
+#include "io/result_folder.hpp"
+#include "pointdriver/study/tangent_convergence.hpp"
+#include "pointdriver/study/work_precision.hpp"
+#include "report/plot/figure.hpp"
+#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
+#include "study/run/finished_result.hpp"
 
 namespace repose::app {
 namespace {
@@ -46,16 +46,17 @@ std::string tangent_csv(const std::vector<point::TangentTest>& tests) {
   return text;
 }
 
-Figure tangent_figure(const std::vector<point::TangentTest>& tests) {
-  Figure figure("Convergence of the laws' tangents",
-                "remainder of Taylor's first order around one step; of second order where the "
-                "tangent is the derivative of the update");
+report::Figure tangent_figure(const std::vector<point::TangentTest>& tests) {
+  report::Figure figure(
+      "Convergence of the laws' tangents",
+      "remainder of Taylor's first order around one step; of second order where the "
+      "tangent is the derivative of the update");
   figure.panel_width_px = 560.0;
   figure.panel_height_px = 360.0;
-  Axes& axes = figure.add_axes();
-  axes.x = {"perturbation over the step", AxisScale::logarithmic};
-  axes.y = {"remainder over change", AxisScale::logarithmic};
-  axes.legend = Legend::right;
+  report::Axes& axes = figure.add_axes();
+  axes.x = {"perturbation over the step", report::AxisScale::logarithmic};
+  axes.y = {"remainder over change", report::AxisScale::logarithmic};
+  axes.legend = report::Legend::right;
   std::size_t colour = 0;
   for (const point::TangentTest& test : tests) {
     std::vector<double> h, remainder;
@@ -64,14 +65,14 @@ Figure tangent_figure(const std::vector<point::TangentTest>& tests) {
         h.push_back(p.h);
         remainder.push_back(p.remainder);
       }
-    Style style;
-    style.colour = cycle_colour(colour++);
-    if (colour > 7) style.marker = Marker::circle;  // one more than colours tell apart
+    report::Style style;
+    style.colour = report::cycle_colour(colour++);
+    if (colour > 7) style.marker = report::Marker::circle;  // one more than colours tell apart
     if (!h.empty())
       axes.line(fmt::format("{}: {:.2f}", test.name, test.order), h, remainder, style);
   }
   const std::array ends{1e-5, 1e-1}, second{1e-12, 1e-4};
-  axes.dashed("second order", ends, second, {Colour::black, 1.2});
+  axes.dashed("second order", ends, second, {report::Colour::black, 1.2});
   return figure;
 }
 
@@ -83,10 +84,11 @@ std::string map_csv(const std::vector<Map>& maps) {
   return text;
 }
 
-Figure work_figure(const std::vector<WorkPoint>& points) {
-  Figure figure("Work and precision of the integrators",
-                "one path with 50 rows, in process; largest error of stress and state in any row; "
-                "median of the repeats, bars: quartiles");
+report::Figure work_figure(const std::vector<WorkPoint>& points) {
+  report::Figure figure(
+      "Work and precision of the integrators",
+      "one path with 50 rows, in process; largest error of stress and state in any row; "
+      "median of the repeats, bars: quartiles");
   figure.columns = 3;
   figure.panel_width_px = 330.0;
   figure.panel_height_px = 250.0;
@@ -94,11 +96,11 @@ Figure work_figure(const std::vector<WorkPoint>& points) {
   for (const WorkPoint& p : points)
     if (paths.empty() || paths.back() != p.path) paths.push_back(p.path);
   for (const std::string& path : paths) {
-    Axes& axes = figure.add_axes();
+    report::Axes& axes = figure.add_axes();
     axes.title = path;
-    axes.x = {"error (relative)", AxisScale::logarithmic};
-    axes.y = {"time (µs)", AxisScale::logarithmic};
-    axes.legend = figure.panels().size() == 3 ? Legend::right : Legend::none;
+    axes.x = {"error (relative)", report::AxisScale::logarithmic};
+    axes.y = {"time (µs)", report::AxisScale::logarithmic};
+    axes.legend = figure.panels().size() == 3 ? report::Legend::right : report::Legend::none;
     std::size_t colour = 0;
     for (const Method method :
          {Method::adaptive, Method::cvode, Method::ida, Method::arkode, Method::implicit}) {
@@ -108,9 +110,9 @@ Figure work_figure(const std::vector<WorkPoint>& points) {
           error.push_back(p.error());
           time.push_back(1e6 * p.seconds);
         }
-      Style style;
-      style.colour = cycle_colour(colour++);
-      style.marker = Marker::circle;
+      report::Style style;
+      style.colour = report::cycle_colour(colour++);
+      style.marker = report::Marker::circle;
       style.marker_px = 5.0;
       if (!error.empty()) axes.line(std::string(point::name_of(method)), error, time, style);
       style.marker.reset();
@@ -125,12 +127,12 @@ Figure work_figure(const std::vector<WorkPoint>& points) {
   return figure;
 }
 
-Figure map_figure(const std::vector<Map>& maps) {
-  Figure figure("Error of one stress update",
-                "log10 |σ − σ_{exact}|/|σ_{exact}| of a single implicit step, London clay");
+report::Figure map_figure(const std::vector<Map>& maps) {
+  report::Figure figure("Error of one stress update",
+                        "log10 |σ − σ_{exact}|/|σ_{exact}| of a single implicit step, London clay");
   figure.columns = 2;
   for (const Map& map : maps) {
-    Axes& axes = figure.add_axes();
+    report::Axes& axes = figure.add_axes();
     axes.title = map.name;
     axes.x.label = "Δε_{v} (%), compression positive";
     axes.y.label = "Δε_{q} (%)";
@@ -140,10 +142,10 @@ Figure map_figure(const std::vector<Map>& maps) {
       y.push_back(100.0 * c.eps_q);
       z.push_back(c.error >= 0.0 ? std::log10(std::max(c.error, 1e-12)) : std::nan(""));
     }
-    ScatterStyle style;
+    report::ScatterStyle style;
     style.diameter = 200.0 * (map.cells.back().eps_v - map.cells.front().eps_v) /
                      (2.0 * (std::sqrt(static_cast<double>(map.cells.size())) - 1.0));
-    axes.scatter(x, y, z, Axis{"log_{10} error"}, style);
+    axes.scatter(x, y, z, report::Axis{"log_{10} error"}, style);
   }
   return figure;
 }
@@ -168,10 +170,10 @@ std::vector<Map> error_maps(int cells) {
       {"OCR 1.5", point::step_error_map(law, theta, start(0.0, 1.5), reach, cells)}};
 }
 
-void draw(const Figure& figure, const std::filesystem::path& file) {
+void draw(const report::Figure& figure, const std::filesystem::path& file) {
   try {
     figure.render_svg(file);
-  } catch (const PlotError& error) {
+  } catch (const report::PlotError& error) {
     fmt::print(stderr, "warning: no {}: {}\n", file.filename().string(), error.what());
   }
 }
@@ -179,20 +181,22 @@ void draw(const Figure& figure, const std::filesystem::path& file) {
 }  // namespace
 
 ChartEnd chart_point(const CommonOptions& options, const std::string& file, bool quick) {
-  const ResultFolder folder(options.output.empty() ? ResultFolder::default_path("chart_point")
-                                                   : std::filesystem::path(options.output));
-  InputFile given = file.empty() ? InputFile::parse("", "chart", options.sets)
-                                 : InputFile::read(file, options.sets);
-  quick = read_chart(given).quick || quick;
+  const io::ResultFolder folder(options.output.empty()
+                                    ? io::ResultFolder::default_path("chart_point")
+                                    : std::filesystem::path(options.output));
+  input::InputFile given = file.empty() ? input::InputFile::parse("", "chart", options.sets)
+                                        : input::InputFile::read(file, options.sets);
+  quick = input::read_chart(given).quick || quick;
   given.throw_if_bad();
-  const std::string input = fmt::format("# The input of this result, by repose {}.\n{}",
-                                        version_string, chart_text(ChartKind::point, quick));
-  if (options.resume && is_finished(folder, input)) return {ExitCode::done, true};
+  const std::string input =
+      fmt::format("# The input of this result, by repose {}.\n{}", version_string,
+                  input::chart_text(input::ChartKind::point, quick));
+  if (options.resume && study::is_finished(folder, input)) return {io::ExitCode::done, true};
   folder.remove_old_outputs();
   folder.write_file("input.toml", input);
   const bool speak = !options.quiet && !options.json;
   const point::WorkEffort effort{quick ? 0.0 : 0.02, quick ? 3 : 1};
-  const InterruptGuard interrupt;
+  const io::InterruptGuard interrupt;
   std::vector<WorkPoint> points;
   for (const point::WorkPath& path : point::work_paths()) {
     if (interrupt.requested()) break;
@@ -224,7 +228,7 @@ ChartEnd chart_point(const CommonOptions& options, const std::string& file, bool
   if (speak)
     fmt::print("{}: chart.csv, chart.svg, error_map.csv, error_map.svg, tangent.csv, tangent.svg\n",
                folder.path().string());
-  return {interrupt.requested() ? ExitCode::interrupted : ExitCode::done};
+  return {interrupt.requested() ? io::ExitCode::interrupted : io::ExitCode::done};
 }
 
 }  // namespace repose::app

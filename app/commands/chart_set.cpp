@@ -2,15 +2,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
-#include "app/finished_result.hpp"
-#include "app/interrupt.hpp"
-#include "app/read_chart.hpp"
-#include "app/read_chart_set.hpp"
-#include "app/report/write_report.hpp"
-#include "app/run_record.hpp"
-#include "app/shipped_input.hpp"
-#include "app/stability/read_stability.hpp"
+#include "input/read_chart.hpp"
+#include "input/read_chart_set.hpp"
+#include "input/read_stability.hpp"
+#include "input/shipped_input.hpp"
+#include "io/interrupt.hpp"
+#include "report/page/write_report.hpp"
 #include "repose_version.hpp"
+#include "study/run/finished_result.hpp"
+#include "study/run/run_record.hpp"
 
 namespace repose::app {
 namespace {
@@ -24,7 +24,7 @@ struct PartRecord {
   std::string reason;  ///< of a failure that left no result
   bool kept = false;
   double cpu_s = 0.0, wall_s = 0.0;
-  ExitCode code = ExitCode::done;
+  io::ExitCode code = io::ExitCode::done;
 };
 
 class Set {
@@ -32,35 +32,36 @@ class Set {
   Set(const CommonOptions& options, const std::string& file, bool quick)
       : options_(options),
         quick_(quick),
-        folder_(options.output.empty() ? ResultFolder::default_path("gallery")
+        folder_(options.output.empty() ? io::ResultFolder::default_path("gallery")
                                        : fs::path(options.output)) {
-    InputFile input = file.empty() ? InputFile::parse(shipped_chart_set(), "all.toml", options.sets)
-                                   : InputFile::read(file, options.sets);
-    set_ = read_chart_set(input, fs::path(file).parent_path(), quick);
+    input::InputFile input =
+        file.empty() ? input::InputFile::parse(input::shipped_chart_set(), "all.toml", options.sets)
+                     : input::InputFile::read(file, options.sets);
+    set_ = input::read_chart_set(input, fs::path(file).parent_path(), quick);
     std::vector<std::string> problems;
-    for (const ChartPart& part : set_.parts) try {
+    for (const input::ChartPart& part : set_.parts) try {
         const std::size_t runs = check(part);
         lines_.push_back(fmt::format("{:<16} {}{}", part.name,
-                                     part_kinds[static_cast<std::size_t>(part.kind)],
+                                     input::part_kinds[static_cast<std::size_t>(part.kind)],
                                      runs > 0 ? fmt::format(", {} runs", runs) : ""));
-      } catch (const BadInput& error) {
+      } catch (const input::BadInput& error) {
         for (const std::string& problem : error.problems())
           problems.push_back(
               fmt::format("{}, chart \"{}\": {}", to_string(part.origin), part.name, problem));
       }
-    if (!problems.empty()) throw BadInput(std::move(problems));
+    if (!problems.empty()) throw input::BadInput(std::move(problems));
   }
 
   const std::vector<std::string>& lines() const { return lines_; }
 
-  ExitCode run() {
-    const ResultFolder folder(folder_);
+  io::ExitCode run() {
+    const io::ResultFolder folder(folder_);
     folder.remove_old_outputs();
     folder.write_file("input.toml", fmt::format("# The charts of this folder, by repose {}.\n{}",
                                                 version_string, set_.text));
-    const InterruptGuard interrupt;
+    const io::InterruptGuard interrupt;
     std::vector<fs::path> made;
-    for (const ChartPart& part : set_.parts) {
+    for (const input::ChartPart& part : set_.parts) {
       if (interrupt.requested()) break;
       tell("[{}/{}] {}: {}", records_.size() + 1, set_.parts.size(), part.name, part.command());
       const PartRecord record = carry_out(part);
@@ -71,7 +72,7 @@ class Set {
                                      record.reason.empty() ? "" : ": " + record.reason));
       if (fs::exists(folder_ / part.name / "summary.json")) made.push_back(folder_ / part.name);
       write_summary(folder, "running");
-      if (!made.empty()) write_report(made, folder_ / "report.html", "Charts");
+      if (!made.empty()) report::write_report(made, folder_ / "report.html", "Charts");
     }
     return finish(folder, interrupt.requested());
   }
@@ -84,7 +85,7 @@ class Set {
     std::fflush(stdout);
   }
 
-  CommonOptions options_of(const ChartPart& part) const {
+  CommonOptions options_of(const input::ChartPart& part) const {
     CommonOptions options = options_;
     options.output = (folder_ / part.name).string();
     options.sets = part.sets;
@@ -93,39 +94,40 @@ class Set {
 
   /// Reads what the part will read, so that a mistake is found before anything has run. Returns how
   /// many runs of a scene it takes.
-  std::size_t check(const ChartPart& part) const {
+  std::size_t check(const input::ChartPart& part) const {
     const CommonOptions options = options_of(part);
-    if (part.kind == PartKind::mpm) return check_chart_mpm(options, part.input, quick_);
-    InputFile input = part.input.empty() ? InputFile::parse("[stability]\n", "chart", part.sets)
-                                         : InputFile::read(part.input, part.sets);
-    if (part.kind == PartKind::stability) {
-      read_stability(input);
+    if (part.kind == input::PartKind::mpm) return check_chart_mpm(options, part.input, quick_);
+    input::InputFile input = part.input.empty()
+                                 ? input::InputFile::parse("[stability]\n", "chart", part.sets)
+                                 : input::InputFile::read(part.input, part.sets);
+    if (part.kind == input::PartKind::stability) {
+      input::read_stability(input);
       return 0;
     }
     for (const auto& [key, node] : input.root()) input.expect("", key.str());
-    read_chart(input);
+    input::read_chart(input);
     input.throw_if_bad();
     return 0;
   }
 
-  ChartEnd make(const ChartPart& part, const CommonOptions& options) const {
+  ChartEnd make(const input::ChartPart& part, const CommonOptions& options) const {
     switch (part.kind) {
-      case PartKind::point:
+      case input::PartKind::point:
         return chart_point(options, part.input, quick_);
-      case PartKind::fit:
+      case input::PartKind::fit:
         return chart_fit(options, part.input, quick_);
-      case PartKind::mpm:
+      case input::PartKind::mpm:
         return chart_mpm(options, part.input, quick_);
-      case PartKind::stability:
+      case input::PartKind::stability:
         return stability_maps(options, part.input, quick_);
     }
     return {};
   }
 
-  PartRecord carry_out(const ChartPart& part) const {
-    const Usage before = usage();
+  PartRecord carry_out(const input::ChartPart& part) const {
+    const study::Usage before = study::usage();
     PartRecord record;
-    const auto failed = [&](ExitCode code, const std::string& reason) {
+    const auto failed = [&](io::ExitCode code, const std::string& reason) {
       record.code = code;
       record.reason = reason;
       fmt::print(stderr, "{}: {}\n", part.name, reason);
@@ -134,23 +136,23 @@ class Set {
       const ChartEnd end = make(part, options_of(part));
       record.code = end.code;
       record.kept = end.kept;
-    } catch (const BadInput& error) {
-      failed(ExitCode::bad_input, error.what());
-    } catch (const IoError& error) {
-      failed(ExitCode::io_error, error.what());
+    } catch (const input::BadInput& error) {
+      failed(io::ExitCode::bad_input, error.what());
+    } catch (const io::IoError& error) {
+      failed(io::ExitCode::io_error, error.what());
     } catch (const std::exception& error) {
-      failed(ExitCode::internal_error, error.what());
+      failed(io::ExitCode::internal_error, error.what());
     }
-    record.status = record.code == ExitCode::done          ? "done"
-                    : record.code == ExitCode::interrupted ? "interrupted"
-                                                           : "failed";
-    const Usage after = usage();
+    record.status = record.code == io::ExitCode::done          ? "done"
+                    : record.code == io::ExitCode::interrupted ? "interrupted"
+                                                               : "failed";
+    const study::Usage after = study::usage();
     record.cpu_s = after.cpu_s - before.cpu_s;
     record.wall_s = after.wall_s - before.wall_s;
     return record;
   }
 
-  Json write_summary(const ResultFolder& folder, const std::string& status) const {
+  Json write_summary(const io::ResultFolder& folder, const std::string& status) const {
     Json parts = Json::array();
     double cpu_s = 0.0, wall_s = 0.0;
     for (std::size_t i = 0; i < records_.size(); ++i) {
@@ -172,15 +174,15 @@ class Set {
     return summary;
   }
 
-  ExitCode finish(const ResultFolder& folder, bool interrupted) const {
-    ExitCode code = ExitCode::done;
+  io::ExitCode finish(const io::ResultFolder& folder, bool interrupted) const {
+    io::ExitCode code = io::ExitCode::done;
     std::size_t kept = 0, failed = 0;
     for (const PartRecord& record : records_) {
       kept += record.kept ? 1 : 0;
       failed += record.status == "failed" ? 1 : 0;
-      if (code == ExitCode::done) code = record.code;
+      if (code == io::ExitCode::done) code = record.code;
     }
-    if (interrupted) code = ExitCode::interrupted;
+    if (interrupted) code = io::ExitCode::interrupted;
     const Json summary = write_summary(folder, interrupted  ? "interrupted"
                                                : failed > 0 ? "failed"
                                                             : "done");
@@ -196,14 +198,14 @@ class Set {
   const CommonOptions& options_;
   bool quick_;
   fs::path folder_;
-  ChartSet set_;
+  input::ChartSet set_;
   std::vector<std::string> lines_;  ///< a part each: what it takes
   std::vector<PartRecord> records_;
 };
 
 }  // namespace
 
-ExitCode chart_set(const CommonOptions& options, const std::string& file, bool quick) {
+io::ExitCode chart_set(const CommonOptions& options, const std::string& file, bool quick) {
   return Set(options, file, quick).run();
 }
 

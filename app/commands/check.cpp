@@ -2,15 +2,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
-#include "app/file_kind.hpp"
-#include "app/progress.hpp"
-#include "app/read_chart_set.hpp"
-#include "app/read_fit.hpp"
-#include "app/read_point_test.hpp"
-#include "app/read_scene.hpp"
-#include "app/shipped_input.hpp"
-#include "app/stability/read_stability.hpp"
-#include "mpm/simulation.hpp"
+#include "input/file_kind.hpp"
+#include "input/read_chart_set.hpp"
+#include "input/read_fit.hpp"
+#include "input/read_point_test.hpp"
+#include "input/read_scene.hpp"
+#include "input/read_stability.hpp"
+#include "input/shipped_input.hpp"
+#include "io/progress.hpp"
+#include "mpm/study/estimate.hpp"
 
 namespace repose::app {
 namespace {
@@ -33,8 +33,8 @@ std::string cells_of(const mpm::Scene& scene) {
   return text;
 }
 
-ExitCode check_scene(InputFile& input, const CommonOptions& options) {
-  const SceneFile file = read_scene(input);
+io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options) {
+  const input::SceneFile file = input::read_scene(input);
   const mpm::Scene& scene = file.scene;
   mpm::Estimate estimate;
   try {
@@ -57,7 +57,7 @@ ExitCode check_scene(InputFile& input, const CommonOptions& options) {
                                         {"wall_s", estimate.seconds},
                                         {"warnings", warnings}};
     fmt::print("{}\n", report.dump());
-    return ExitCode::done;
+    return io::ExitCode::done;
   }
   if (!options.quiet)
     fmt::print(
@@ -72,9 +72,9 @@ ExitCode check_scene(InputFile& input, const CommonOptions& options) {
         grouped(static_cast<double>(estimate.live_cells)), cells_of(scene), estimate.first_dt_s,
         scene.dt ? ", fixed" : "", grouped(rounded(estimate.steps)), scene.end_time,
         estimate.memory_MB,
-        duration_text(estimate.seconds < 10.0 ? rounded(estimate.seconds) : estimate.seconds));
+        io::duration_text(estimate.seconds < 10.0 ? rounded(estimate.seconds) : estimate.seconds));
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
-  return ExitCode::done;
+  return io::ExitCode::done;
 }
 
 /// "modified_cam_clay, v-ln_p"
@@ -83,8 +83,8 @@ std::string law_title(const LawSpec& law) {
   return fmt::format("{}, {}", info.name, info.option);
 }
 
-ExitCode check_point_test(InputFile& input, const CommonOptions& options) {
-  const PointTestFile file = read_point_test(input);
+io::ExitCode check_point_test(input::InputFile& input, const CommonOptions& options) {
+  const input::PointTestFile file = input::read_point_test(input);
   if (!options.quiet)
     fmt::print(
         "{}: a sound point test, \"{}\"\n"
@@ -93,11 +93,11 @@ ExitCode check_point_test(InputFile& input, const CommonOptions& options) {
         "  integration  {}\n",
         input.name(), file.name, law_title(file.law), file.test.path.legs.size(),
         point::name_of(point::method_for(find_law(file.law), file.test.settings.method)));
-  return ExitCode::done;
+  return io::ExitCode::done;
 }
 
-ExitCode check_fit(const std::string& path, const CommonOptions& options) {
-  const FitFile file = read_fit(path, options.sets, options.seed);
+io::ExitCode check_fit(const std::string& path, const CommonOptions& options) {
+  const input::FitFile file = input::read_fit(path, options.sets, options.seed);
   if (!options.quiet)
     fmt::print(
         "{}: a sound fit, \"{}\"\n"
@@ -106,40 +106,40 @@ ExitCode check_fit(const std::string& path, const CommonOptions& options) {
         "  targets          {}\n",
         path, file.name, law_title(file.law), file.free.size(), file.targets.size());
   for (const std::string& note : file.notes) fmt::print(stderr, "warning: {}\n", note);
-  return ExitCode::done;
+  return io::ExitCode::done;
 }
 
-ExitCode check_stability(InputFile& input, const CommonOptions& options) {
-  const StabilityInput file = read_stability(input);
+io::ExitCode check_stability(input::InputFile& input, const CommonOptions& options) {
+  const input::StabilityInput file = input::read_stability(input);
   std::vector<std::string_view> parts;
-  for (const StabilityPart part : file.parts)
-    parts.push_back(stability_names[static_cast<std::size_t>(part)]);
+  for (const input::StabilityPart part : file.parts)
+    parts.push_back(input::stability_names[static_cast<std::size_t>(part)]);
   if (!options.quiet)
     fmt::print("{}: sound stability maps\n  parts  {}\n", input.name(), fmt::join(parts, ", "));
-  return ExitCode::done;
+  return io::ExitCode::done;
 }
 
-ExitCode check_charts(const std::string& path, const CommonOptions& options) {
+io::ExitCode check_charts(const std::string& path, const CommonOptions& options) {
   const std::vector<std::string> lines = check_chart_set(options, path);
   if (!options.quiet)
     fmt::print("{}: a sound set of charts\n  {}\n", path, fmt::join(lines, "\n  "));
-  return ExitCode::done;
+  return io::ExitCode::done;
 }
 
-ExitCode check_file(const std::string& path, const CommonOptions& options) {
-  InputFile input = open_scene(path, options.sets);
-  if (is_chart_set(input)) return check_charts(path, options);
-  switch (kind_of(input)) {
-    case FileKind::scene:
+io::ExitCode check_file(const std::string& path, const CommonOptions& options) {
+  input::InputFile input = input::open_scene(path, options.sets);
+  if (input::is_chart_set(input)) return check_charts(path, options);
+  switch (input::kind_of(input)) {
+    case input::FileKind::scene:
       return check_scene(input, options);
-    case FileKind::point_test:
+    case input::FileKind::point_test:
       return check_point_test(input, options);
-    case FileKind::fit:
+    case input::FileKind::fit:
       return check_fit(path, options);
-    case FileKind::stability:
+    case input::FileKind::stability:
       return check_stability(input, options);
   }
-  return ExitCode::bad_input;
+  return io::ExitCode::bad_input;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/exit_code.hpp"
+#include "io/exit_code.hpp"
 
 namespace CLI {
 class App;
@@ -80,7 +80,7 @@ std::string origin_line(const std::string& path, const CommonOptions& options);
 struct Command {
   CLI::App* verb;  ///< Verb::app()
   std::shared_ptr<const CommonOptions> options;
-  std::function<ExitCode()> run;
+  std::function<io::ExitCode()> run;
 };
 
 Command add_run(CLI::App& root);

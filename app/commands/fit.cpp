@@ -6,14 +6,14 @@
 #include <tbb/global_control.h>
 
 #include "app/commands/command.hpp"
-#include "app/fit_picture.hpp"
-#include "app/fit_record.hpp"
-#include "app/interrupt.hpp"
-#include "app/plot/gnuplot.hpp"
-#include "app/progress.hpp"
-#include "app/result_folder.hpp"
-#include "app/run_record.hpp"
+#include "io/interrupt.hpp"
+#include "io/progress.hpp"
+#include "io/result_folder.hpp"
+#include "report/picture/fit_picture.hpp"
+#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
+#include "study/fit/fit_record.hpp"
+#include "study/run/run_record.hpp"
 
 namespace repose::app {
 namespace {
@@ -35,51 +35,51 @@ class FitRun {
   FitRun(const FitArguments& arguments, const CommonOptions& options)
       : arguments_(arguments),
         options_(options),
-        output_(options.output.empty() ? ResultFolder::default_path(
+        output_(options.output.empty() ? io::ResultFolder::default_path(
                                              std::filesystem::path(arguments.file).stem().string())
                                        : std::filesystem::path(options.output)),
-        file_(read_fit(arguments.file, options.sets, options.seed, output_ / "runs")),
+        file_(input::read_fit(arguments.file, options.sets, options.seed, output_ / "runs")),
         problem_(calibration::ParameterSpace(file_.free), file_.targets, file_.balance),
         folder_(output_) {
     file_.options.starts_from = arguments.starts_from;
     file_.options.starts_to = arguments.starts_to;
     const int to = arguments.starts_to < 0 ? file_.options.starts : arguments.starts_to;
     if (arguments.starts_from >= to || to > file_.options.starts)
-      throw BadInput(
+      throw input::BadInput(
           {fmt::format("--starts-from {} --starts-to {}: this fit has starts 0 to {}, and "
                        "--starts-to is the first one that is left out",
                        arguments.starts_from, arguments.starts_to, file_.options.starts)});
   }
 
-  ExitCode run() {
+  io::ExitCode run() {
     std::vector<calibration::StartResult> done;
     for (const std::string& dir : arguments_.merge) {
       const std::filesystem::path journal = std::filesystem::path(dir) / journal_name;
       if (!std::filesystem::exists(journal))
-        throw IoError(journal,
-                      "there is no journal of starts; give result folders of `repose fit`");
-      merge_into(done, read_journal(journal, file_), journal.string());
+        throw io::IoError(journal,
+                          "there is no journal of starts; give result folders of `repose fit`");
+      study::merge_into(done, study::read_journal(journal, file_), journal.string());
     }
     if (options_.resume) {
       const std::filesystem::path own = folder_.file(journal_name);
-      merge_into(done, read_journal(own, file_), own.string());
+      study::merge_into(done, study::read_journal(own, file_), own.string());
     }
     folder_.remove_old_outputs();
     folder_.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n# "
                                                  "From {}\n{}",
                                                  version_string, arguments_.file, file_.resolved));
-    std::string journal = journal_head(file_);
-    for (const auto& s : done) journal += journal_line(s);
+    std::string journal = study::journal_head(file_);
+    for (const auto& s : done) journal += study::journal_line(s);
     folder_.write_file(journal_name, journal);
     for (const std::string& note : file_.notes)
       if (!options_.quiet) fmt::print(stderr, "note: {}\n", note);
 
-    const Usage before = usage();
+    const study::Usage before = study::usage();
     std::optional<tbb::global_control> threads;
     if (options_.threads > 0)
       threads.emplace(tbb::global_control::max_allowed_parallelism,
                       static_cast<std::size_t>(options_.threads));
-    const InterruptGuard interrupt;
+    const io::InterruptGuard interrupt;
     problem_.interrupt_by([&] { return interrupt.requested(); });
     if (!file_.coarse.empty())
       coarse_to_fine(done, interrupt);
@@ -94,22 +94,22 @@ class FitRun {
     if (result_.starts.empty()) {
       write_summary(interrupted ? "interrupted" : "failed", before, {});
       fmt::print(stderr, "{}: no start came to an end\n", arguments_.file);
-      return interrupted ? ExitCode::interrupted : ExitCode::numerical_failure;
+      return interrupted ? io::ExitCode::interrupted : io::ExitCode::numerical_failure;
     }
     if (interrupted) problem_.interrupt_by({});
     analyse(interrupted);
     const std::string status = interrupted             ? "interrupted"
                                : result_.best().failed ? "failed"
                                                        : "done";
-    Json report = fit_report(file_, problem_, result_, status);
+    Json report = study::fit_report(file_, problem_, result_, status);
     folder_.write_file("fit.json", report.dump(2) + "\n");
-    folder_.write_file("fitted.toml", fitted_toml(file_, result_));
-    folder_.write_file("predictions.csv", predictions_csv(file_, problem_, result_));
+    folder_.write_file("fitted.toml", study::fitted_toml(file_, result_));
+    folder_.write_file("predictions.csv", study::predictions_csv(file_, problem_, result_));
     draw();
     write_summary(status, before, report);
-    tell(status, usage().wall_s - before.wall_s);
-    if (interrupted) return ExitCode::interrupted;
-    return result_.best().failed ? ExitCode::numerical_failure : ExitCode::done;
+    tell(status, study::usage().wall_s - before.wall_s);
+    if (interrupted) return io::ExitCode::interrupted;
+    return result_.best().failed ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
  private:
@@ -117,7 +117,7 @@ class FitRun {
   void after(const calibration::StartResult& s) {
     std::filesystem::path path = folder_.file(journal_name);
     FILE* out = std::fopen(path.c_str(), "ab");
-    const std::string line = journal_line(s);
+    const std::string line = study::journal_line(s);
     const bool good =
         out != nullptr && std::fwrite(line.data(), 1, line.size(), out) == line.size();
     if (out != nullptr && (std::fclose(out) != 0 || !good)) out = nullptr;
@@ -132,7 +132,7 @@ class FitRun {
 
   /// All starts with the coarse scenes, then the best of them with the fine ones.
   void coarse_to_fine(const std::vector<calibration::StartResult>& done,
-                      const InterruptGuard& interrupt) {
+                      const io::InterruptGuard& interrupt) {
     calibration::Problem coarse(problem_.space(), file_.coarse, file_.balance);
     coarse.interrupt_by([&] { return interrupt.requested(); });
     // merged shares are refined again, from the best of all
@@ -194,10 +194,10 @@ class FitRun {
           calibration::bootstrap(problem_, best.z, file_.bootstrap, file_.options.seed);
   }
 
-  void write_summary(const std::string& status, const Usage& before, const Json& report) {
+  void write_summary(const std::string& status, const study::Usage& before, const Json& report) {
     if (!write_error_.empty())
-      throw IoError(write_error_, "cannot append to the journal of starts");
-    const Usage after = usage();
+      throw io::IoError(write_error_, "cannot append to the journal of starts");
+    const study::Usage after = study::usage();
     Json s;
     s["repose"] = version_string;
     s["kind"] = "fit";
@@ -218,14 +218,14 @@ class FitRun {
     const auto attempt = [&](const char* name, auto&& figure) {
       try {
         figure().render_svg(folder_.file(name));
-      } catch (const PlotError& error) {
+      } catch (const report::PlotError& error) {
         fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
       } catch (const std::logic_error& error) {
         fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
       }
     };
-    attempt("fit.svg", [&] { return fit_picture(file_, problem_, result_); });
-    attempt("fit_diagnostics.svg", [&] { return fit_diagnostics(file_, result_); });
+    attempt("fit.svg", [&] { return report::fit_picture(file_, problem_, result_); });
+    attempt("fit_diagnostics.svg", [&] { return report::fit_diagnostics(file_, result_); });
   }
 
   void tell(const std::string& status, double seconds) const {
@@ -241,7 +241,7 @@ class FitRun {
     }
     if (options_.quiet) return;
     fmt::print("{}: {}, objective {:.6g} from {} starts in {}\n", folder_.path().string(), status,
-               result_.best().objective, result_.starts.size(), duration_text(seconds));
+               result_.best().objective, result_.starts.size(), io::duration_text(seconds));
     for (std::size_t i = 0; i < file_.free.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const std::string unit = file_.free[i].unit == "-" ? "" : " " + file_.free[i].unit;
@@ -255,7 +255,7 @@ class FitRun {
     }
     if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
       fmt::print("  worst determined: {}\n", u.combinations.front().words);
-    for (const std::string& text : discrepancies(file_, result_))
+    for (const std::string& text : study::discrepancies(file_, result_))
       fmt::print("  does not follow: {}\n", text);
     if (result_.clusters.size() > 1) {
       const auto& c = result_.clusters;
@@ -268,10 +268,10 @@ class FitRun {
   FitArguments arguments_;
   CommonOptions options_;
   std::filesystem::path output_;
-  FitFile file_;
+  input::FitFile file_;
   calibration::Problem problem_;
-  ResultFolder folder_;
-  FitResult result_;
+  io::ResultFolder folder_;
+  study::FitResult result_;
   std::string write_error_;
 };
 

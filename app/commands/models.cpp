@@ -1,5 +1,5 @@
 #include "app/commands/command.hpp"
-#include "app/law_tables.hpp"
+#include "input/law_tables.hpp"
 
 namespace repose::app {
 
@@ -11,11 +11,11 @@ Command add_models(CLI::App& root) {
   verb.option("LAW", *name, "Name of a law", "");
   verb.flag("--json", options->json, "Print JSON instead of text");
   return {verb.app(), options, [options, name] {
-            const std::string text = options->json   ? laws_as_json(*name)
-                                     : name->empty() ? law_list()
-                                                     : law_description(*name);
+            const std::string text = options->json   ? input::laws_as_json(*name)
+                                     : name->empty() ? input::law_list()
+                                                     : input::law_description(*name);
             std::fputs(text.c_str(), stdout);
-            return ExitCode::done;
+            return io::ExitCode::done;
           }};
 }
 

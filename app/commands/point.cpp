@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/command.hpp"
-#include "app/file_kind.hpp"
-#include "app/plot/gnuplot.hpp"
-#include "app/point_picture.hpp"
-#include "app/result_folder.hpp"
-#include "app/run_record.hpp"
+#include "input/file_kind.hpp"
+#include "io/result_folder.hpp"
+#include "report/picture/point_picture.hpp"
+#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
+#include "study/run/run_record.hpp"
 
 namespace repose::app {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// The input with what the command line changed and the defaults that numbers depend on.
-toml::table resolved(const InputFile& input, const PointTestFile& file) {
+toml::table resolved(const input::InputFile& input, const input::PointTestFile& file) {
   toml::table table = input.root();
   if (!table.contains("law")) table.insert("law", toml::table{});
   toml::table& law = *table["law"].as_table();
@@ -75,9 +75,9 @@ class PointRun {
  public:
   PointRun(const std::string& path, const CommonOptions& options)
       : options_(options),
-        input_(InputFile::read(path, options.sets)) {
-    require_kind(input_, FileKind::point_test, "point");
-    file_ = read_point_test(input_);
+        input_(input::InputFile::read(path, options.sets)) {
+    input::require_kind(input_, input::FileKind::point_test, "point");
+    file_ = input::read_point_test(input_);
     law_ = &find_law(file_.law);
     theta_ = checked_parameters(file_.law);
     origin_ = "From " + path;
@@ -86,22 +86,23 @@ class PointRun {
         origin_.begin(), origin_.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   }
 
-  ExitCode run() {
-    const ResultFolder folder(options_.output.empty() ? ResultFolder::default_path(file_.name)
-                                                      : std::filesystem::path(options_.output));
+  io::ExitCode run() {
+    const io::ResultFolder folder(options_.output.empty()
+                                      ? io::ResultFolder::default_path(file_.name)
+                                      : std::filesystem::path(options_.output));
     folder.remove_old_outputs();
     const toml::table input = resolved(input_, file_);
     folder.write_file("input.toml", toml_text(input, origin_));
-    const Usage before = usage();
+    const study::Usage before = study::usage();
     const point::Outcome outcome = point::simulate(*law_, theta_, file_.test, curve_);
-    const Usage after = usage();
+    const study::Usage after = study::usage();
     reason_ = point::explain(*law_, theta_, file_.test, curve_);
     folder.write_file("curve.csv", csv());
     const Json report = summary(input, after.wall_s - before.wall_s, after.cpu_s - before.cpu_s);
     folder.write_file("summary.json", report.dump(2) + "\n");
     draw(folder);
     tell(folder, report);
-    return point::is_failure(outcome.status) ? ExitCode::numerical_failure : ExitCode::done;
+    return point::is_failure(outcome.status) ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
  private:
@@ -174,18 +175,18 @@ class PointRun {
   }
 
   /// A picture that cannot be drawn is a warning, not a failure: the figures are in curve.csv.
-  void draw(const ResultFolder& folder) const {
+  void draw(const io::ResultFolder& folder) const {
     if (curve_.rows.size() < 2) return;
     try {
-      point_picture(file_, theta_, curve_).render_svg(folder.file("curve.svg"));
-    } catch (const PlotError& error) {
+      report::point_picture(file_, theta_, curve_).render_svg(folder.file("curve.svg"));
+    } catch (const report::PlotError& error) {
       fmt::print(stderr, "warning: no curve.svg: {}\n", error.what());
     } catch (const std::logic_error& error) {
       fmt::print(stderr, "warning: no curve.svg: {}\n", error.what());
     }
   }
 
-  void tell(const ResultFolder& folder, const Json& report) const {
+  void tell(const io::ResultFolder& folder, const Json& report) const {
     const bool failed = point::is_failure(curve_.outcome.status);
     if (failed) fmt::print(stderr, "{}: {}\n", input_.name(), reason_);
     if (options_.json) {
@@ -201,8 +202,8 @@ class PointRun {
   }
 
   CommonOptions options_;
-  InputFile input_;
-  PointTestFile file_;
+  input::InputFile input_;
+  input::PointTestFile file_;
   const LawInfo* law_ = nullptr;
   std::vector<double> theta_;
   std::string origin_;

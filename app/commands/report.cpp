@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/command.hpp"
-#include "app/input_file.hpp"
-#include "app/report/write_report.hpp"
-#include "app/result_folder.hpp"
+#include "input/input_file.hpp"
+#include "io/result_folder.hpp"
+#include "report/page/write_report.hpp"
 
 namespace repose::app {
 namespace {
@@ -14,12 +14,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-ExitCode report(const std::vector<std::string>& folders, const CommonOptions& options) {
-  const fs::path page =
-      options.output.empty() ? ResultFolder::default_path("report.html") : fs::path(options.output);
+io::ExitCode report(const std::vector<std::string>& folders, const CommonOptions& options) {
+  const fs::path page = options.output.empty() ? io::ResultFolder::default_path("report.html")
+                                               : fs::path(options.output);
   if (fs::is_directory(page))
-    throw BadInput({fmt::format("-o {}: is a folder; give the page a name: -o {}", options.output,
-                                (page / "report.html").string())});
+    throw input::BadInput({fmt::format("-o {}: is a folder; give the page a name: -o {}",
+                                       options.output, (page / "report.html").string())});
   std::vector<fs::path> results;
   for (const std::string& folder : folders)
     // results/* names the older page as well
@@ -27,8 +27,9 @@ ExitCode report(const std::vector<std::string>& folders, const CommonOptions& op
       results.emplace_back(folder);
     else if (!options.quiet)
       fmt::print(stderr, "note: {} is a file, left out\n", folder);
-  if (results.empty()) throw BadInput({"repose report takes result folders, and none is given"});
-  const WrittenReport written = write_report(results, page);
+  if (results.empty())
+    throw input::BadInput({"repose report takes result folders, and none is given"});
+  const report::WrittenReport written = report::write_report(results, page);
   const double megabytes = static_cast<double>(written.bytes) / 1e6;
   if (options.json)
     fmt::print("{}\n", Json{{"event", "done"},
@@ -39,7 +40,7 @@ ExitCode report(const std::vector<std::string>& folders, const CommonOptions& op
   else if (!options.quiet)
     fmt::print("{}: {} result{}, {:.1f} MB; any browser opens it\n", page.string(), written.results,
                written.results == 1 ? "" : "s", megabytes);
-  return ExitCode::done;
+  return io::ExitCode::done;
 }
 
 }  // namespace

@@ -5,11 +5,12 @@
 
 #include "app/accurate_run.hpp"
 #include "app/commands/command.hpp"
-#include "app/file_kind.hpp"
-#include "app/resolved_input.hpp"
-#include "app/result_folder.hpp"
-#include "app/run_scene.hpp"
-#include "app/shipped_input.hpp"
+#include "input/file_kind.hpp"
+#include "input/resolved_scene.hpp"
+#include "input/shipped_input.hpp"
+#include "io/result_folder.hpp"
+#include "report/picture/heap_picture.hpp"
+#include "study/run/run_scene.hpp"
 
 namespace repose::app {
 namespace {
@@ -28,39 +29,40 @@ void refuse_chosen_keys(const CommonOptions& options) {
        {"grid.h", "grid.kernel", "step.transfer", "step.courant", "step.dt"})
     for (const std::string& set : options.sets)
       if (set.starts_with(std::string(key) + "="))
-        throw BadInput({fmt::format("--set {}: --accuracy chooses {} itself", set, key)});
+        throw input::BadInput({fmt::format("--set {}: --accuracy chooses {} itself", set, key)});
 }
 
-ExitCode run_accurately(const RunArguments& arguments) {
+io::ExitCode run_accurately(const RunArguments& arguments) {
   const CommonOptions& options = arguments.common;
   AccuracyRequest request;
   const std::string& quantity = arguments.quantity;
   if (quantity.empty())
-    throw BadInput(
-        {fmt::format("--accuracy needs --for, one of {}", fmt::join(advised_names, ", "))});
-  const auto named = std::find(advised_names.begin(), advised_names.end(), quantity);
-  if (named == advised_names.end()) {
-    const std::string near = closest(quantity, {advised_names.begin(), advised_names.end()});
-    throw BadInput(
-        {fmt::format("--for {}: one of {} is needed{}", quantity, fmt::join(advised_names, ", "),
-                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
+    throw input::BadInput(
+        {fmt::format("--accuracy needs --for, one of {}", fmt::join(study::advised_names, ", "))});
+  const auto named = std::find(study::advised_names.begin(), study::advised_names.end(), quantity);
+  if (named == study::advised_names.end()) {
+    const std::string near =
+        input::closest(quantity, {study::advised_names.begin(), study::advised_names.end()});
+    throw input::BadInput({fmt::format(
+        "--for {}: one of {} is needed{}", quantity, fmt::join(study::advised_names, ", "),
+        near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
   }
-  request.quantity = static_cast<Quantity>(named - advised_names.begin());
+  request.quantity = static_cast<study::Quantity>(named - study::advised_names.begin());
   const auto number = [](const char* name, double x, double upper, const char* meaning) {
     if (!(x > 0.0) || !(x <= upper))
-      throw BadInput(
+      throw input::BadInput(
           {fmt::format("--{} {}: {} must be a number in (0, {}]", name, x, meaning, upper)});
     return x;
   };
   request.target = number("accuracy", *arguments.accuracy, 0.5, "the relative error");
   if (arguments.budget) request.budget = number("budget", *arguments.budget, 1e9, "CPU seconds");
   refuse_chosen_keys(options);
-  InputFile input = open_scene(arguments.file, options.sets);
-  require_kind(input, FileKind::scene, "run");
-  request.file = read_scene(input);
+  input::InputFile input = input::open_scene(arguments.file, options.sets);
+  input::require_kind(input, input::FileKind::scene, "run");
+  request.file = input::read_scene(input);
   request.origin = origin_line(arguments.file, options);
   request.folder = options.output.empty()
-                       ? ResultFolder::default_path(request.file.scene.name + "_accuracy")
+                       ? io::ResultFolder::default_path(request.file.scene.name + "_accuracy")
                        : std::filesystem::path(options.output);
   request.runs =
       arguments.runs.empty() ? request.folder / "runs" : std::filesystem::path(arguments.runs);
@@ -72,28 +74,30 @@ ExitCode run_accurately(const RunArguments& arguments) {
   return run_to_accuracy(request);
 }
 
-ExitCode run_file(const RunArguments& arguments) {
+io::ExitCode run_file(const RunArguments& arguments) {
   const CommonOptions& options = arguments.common;
   const std::string& path = arguments.file;
   if (arguments.accuracy) return run_accurately(arguments);
   for (const auto& [given, option] : {std::pair{arguments.budget.has_value(), "--budget"},
                                       {!arguments.quantity.empty(), "--for"},
                                       {!arguments.runs.empty(), "--runs"}})
-    if (given) throw BadInput({fmt::format("{} goes with --accuracy, which is missing", option)});
-  InputFile input = open_scene(path, options.sets);
-  require_kind(input, FileKind::scene, "run");
-  RunRequest request;
-  request.file = read_scene(input);
-  request.input = resolved_input(request.file, origin_line(path, options));
-  request.folder = options.output.empty() ? ResultFolder::default_path(request.file.scene.name)
+    if (given)
+      throw input::BadInput({fmt::format("{} goes with --accuracy, which is missing", option)});
+  input::InputFile input = input::open_scene(path, options.sets);
+  input::require_kind(input, input::FileKind::scene, "run");
+  study::RunRequest request;
+  request.file = input::read_scene(input);
+  request.input = input::resolved_input(request.file, origin_line(path, options));
+  request.folder = options.output.empty() ? io::ResultFolder::default_path(request.file.scene.name)
                                           : std::filesystem::path(options.output);
   request.threads = options.threads;
   request.seed = options.seed;
   request.resume = options.resume;
+  request.picture = report::draw_final_picture;
   request.quiet = options.quiet;
   request.json = options.json;
   try {
-    return run_scene(request);
+    return study::run_scene(request);
   } catch (const InputError& error) {
     input.report(error);
     input.throw_if_bad();
@@ -114,14 +118,14 @@ Command add_run(CLI::App& root) {
   const auto arguments = std::make_shared<RunArguments>();
   CommonOptions& options = arguments->common;
   verb.required("SCENE", arguments->file,
-                fmt::format("A file, or one of {}", fmt::join(shipped_scenes(), ", ")), "");
+                fmt::format("A file, or one of {}", fmt::join(input::shipped_scenes(), ", ")), "");
   add_run_options(verb, options);
   verb.option("--accuracy", arguments->accuracy,
               "Relative error to reach, as in 0.02: chooses h, kernel, transfer and step, runs "
               "coarse and fine ones, and gives what they tend to with an error bar",
               "E");
   verb.option("--for", arguments->quantity,
-              fmt::format("Of what (with --accuracy): {}", fmt::join(advised_names, ", ")),
+              fmt::format("Of what (with --accuracy): {}", fmt::join(study::advised_names, ", ")),
               "QUANTITY");
   verb.option("--budget", arguments->budget,
               "CPU seconds that --accuracy may take; refuses beforehand what takes more",

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
-#include "app/finished_result.hpp"
-#include "app/interrupt.hpp"
-#include "app/run_record.hpp"
-#include "app/stability/part.hpp"
+#include "io/interrupt.hpp"
+#include "report/stability/part.hpp"
 #include "repose_version.hpp"
+#include "study/run/finished_result.hpp"
+#include "study/run/run_record.hpp"
 
 namespace repose::app {
 namespace {
@@ -33,26 +33,27 @@ std::string parts_override(const std::string& parts) {
   return fmt::format("stability.parts=[{}]", list);
 }
 
-Json map_part(StabilityPart part, const StabilityInput& input, PartOutput& out) {
+Json map_part(input::StabilityPart part, const input::StabilityInput& input,
+              report::PartOutput& out) {
   switch (part) {
-    case StabilityPart::clay:
-      return map_clay(input, out);
-    case StabilityPart::mu_i:
-      return map_mu_i(input, out);
-    case StabilityPart::step:
-      return map_step(input, out);
-    case StabilityPart::mpm:
-      return map_mpm(input, out);
-    case StabilityPart::collapse:
-      return map_collapse(input, out);
+    case input::StabilityPart::clay:
+      return report::map_clay(input, out);
+    case input::StabilityPart::mu_i:
+      return report::map_mu_i(input, out);
+    case input::StabilityPart::step:
+      return report::map_step(input, out);
+    case input::StabilityPart::mpm:
+      return report::map_mpm(input, out);
+    case input::StabilityPart::collapse:
+      return report::map_collapse(input, out);
   }
   return {};
 }
 
 /// The figures of parts that an interrupted run on the same input had done; null if there are none.
-Json parts_done(const ResultFolder& folder, const std::string& input) {
-  if (text_of(folder.file("input.toml")) != input) return {};
-  const Json summary = Json::parse(text_of(folder.file("summary.json")), nullptr, false);
+Json parts_done(const io::ResultFolder& folder, const std::string& input) {
+  if (study::text_of(folder.file("input.toml")) != input) return {};
+  const Json summary = Json::parse(study::text_of(folder.file("summary.json")), nullptr, false);
   return summary.is_object() ? summary.value("parts", Json()) : Json();
 }
 
@@ -60,56 +61,58 @@ class Maps {
  public:
   Maps(const CommonOptions& options, const std::string& file, bool quick)
       : options_(options),
-        folder_(options.output.empty() ? ResultFolder::default_path("stability")
+        folder_(options.output.empty() ? io::ResultFolder::default_path("stability")
                                        : std::filesystem::path(options.output)) {
     std::vector<std::string> sets = options.sets;
     if (quick) sets.emplace_back("stability.quick=true");
-    InputFile given = file.empty() ? InputFile::parse("[stability]\n", "stability.toml", sets)
-                                   : InputFile::read(file, sets);
-    input_ = read_stability(given);
-    text_ = stability_text(
+    input::InputFile given = file.empty()
+                                 ? input::InputFile::parse("[stability]\n", "stability.toml", sets)
+                                 : input::InputFile::read(file, sets);
+    input_ = input::read_stability(given);
+    text_ = input::stability_text(
         input_, file.empty()
                     ? fmt::format("By repose {}.", version_string)
                     : fmt::format("{}, by repose {}.", origin_line(file, options), version_string));
   }
 
   ChartEnd run() {
-    if (options_.resume && is_finished(folder_, text_)) return {ExitCode::done, true};
+    if (options_.resume && study::is_finished(folder_, text_)) return {io::ExitCode::done, true};
     if (options_.resume) parts_ = parts_done(folder_, text_);
     if (parts_.is_null()) folder_.remove_old_outputs();
     folder_.write_file("input.toml", text_);
-    const InterruptGuard interrupt;
-    for (const StabilityPart part : input_.parts) {
+    const io::InterruptGuard interrupt;
+    for (const input::StabilityPart part : input_.parts) {
       if (interrupt.requested()) break;
       make(part);
       write_summary("interrupted");
     }
     const bool done =
-        std::all_of(input_.parts.begin(), input_.parts.end(), [&](StabilityPart part) {
-          return parts_.contains(std::string(stability_names[static_cast<std::size_t>(part)]));
+        std::all_of(input_.parts.begin(), input_.parts.end(), [&](input::StabilityPart part) {
+          return parts_.contains(
+              std::string(input::stability_names[static_cast<std::size_t>(part)]));
         });
     const Json summary = write_summary(done ? "done" : "interrupted");
     if (options_.json)
       fmt::print("{}\n", summary.dump());
     else if (!options_.quiet)
       fmt::print("{}: {}, summary.json\n", folder_.path().string(), fmt::join(files(), ", "));
-    return {done ? ExitCode::done : ExitCode::interrupted};
+    return {done ? io::ExitCode::done : io::ExitCode::interrupted};
   }
 
  private:
-  void make(StabilityPart part) {
-    const std::string name(stability_names[static_cast<std::size_t>(part)]);
+  void make(input::StabilityPart part) {
+    const std::string name(input::stability_names[static_cast<std::size_t>(part)]);
     if (parts_.contains(name)) return;
-    PartOutput out(folder_, options_.quiet || options_.json);
-    const Usage start = usage();
+    report::PartOutput out(folder_, options_.quiet || options_.json);
+    const study::Usage start = study::usage();
     Json figures;
     try {
       figures = map_part(part, input_, out);
     } catch (const InputError& error) {
-      throw BadInput(
+      throw input::BadInput(
           {fmt::format("repose stability, {}: {}: {}", name, error.key(), error.what())});
     }
-    const Usage end = usage();
+    const study::Usage end = study::usage();
     figures["cpu_s"] = end.cpu_s - start.cpu_s;
     figures["wall_s"] = end.wall_s - start.wall_s;
     figures["files"] = out.files();
@@ -137,8 +140,8 @@ class Maps {
   }
 
   const CommonOptions& options_;
-  ResultFolder folder_;
-  StabilityInput input_;
+  io::ResultFolder folder_;
+  input::StabilityInput input_;
   std::string text_;
   Json parts_;
 };

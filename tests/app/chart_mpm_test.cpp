@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "app/command_line.hpp"
-#include "app/mpm_sweep.hpp"
+#include "study/accuracy/sweep.hpp"
 #include "tests/app/csv_table.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SweepRun run_with(double courant, std::vector<double> depth, double front) {
-  SweepRun run;
+study::SweepRun run_with(double courant, std::vector<double> depth, double front) {
+  study::SweepRun run;
   mpm::Scene& scene = run.file.scene;
   scene.h = 0.5;
   scene.courant = courant;
@@ -38,13 +38,13 @@ SweepRun run_with(double courant, std::vector<double> depth, double front) {
 }
 
 TEST(MpmSweep, ChangesAreMeasuredFromTheShortestStep) {
-  const std::vector<SweepRun> runs{run_with(0.4, {2.2, 1.0, 0.0}, 1.1),
-                                   run_with(0.2, {2.0, 1.2, 0.1}, 1.0),
-                                   run_with(0.1, {2.0, 1.0, 0.0}, 1.0)};
-  const std::vector<SweepSeries> series = series_of(runs);
+  const std::vector<study::SweepRun> runs{run_with(0.4, {2.2, 1.0, 0.0}, 1.1),
+                                          run_with(0.2, {2.0, 1.2, 0.1}, 1.0),
+                                          run_with(0.1, {2.0, 1.0, 0.0}, 1.0)};
+  const std::vector<study::SweepSeries> series = study::series_of(runs);
   ASSERT_EQ(series.size(), 1u);
   ASSERT_EQ(series[0].finest(), &runs[2]);
-  const auto change = change_between(runs[0], runs[2]);
+  const auto change = study::change_between(runs[0], runs[2]);
   ASSERT_TRUE(change);
   EXPECT_DOUBLE_EQ(change->front, 1.1 / 1.0 - 1.0);
   EXPECT_DOUBLE_EQ(change->front_99, 0.8 * 1.1 / (0.8 * 1.0) - 1.0);
@@ -53,32 +53,32 @@ TEST(MpmSweep, ChangesAreMeasuredFromTheShortestStep) {
   // |Δdepth| of 0.2 over half a column, over the front of 1 m and H_0 = 2 m
   EXPECT_DOUBLE_EQ(change->profile_mean, (2.2 - 2.0) * 0.25 / (1.0 * 2.0));
   // only 0.4 → 0.1 is a quarter
-  const auto quartered = change_when_quartered(series[0]);
+  const auto quartered = study::change_when_quartered(series[0]);
   ASSERT_TRUE(quartered);
   EXPECT_DOUBLE_EQ(quartered->front, change->front);
   EXPECT_DOUBLE_EQ(quartered->profile_max, change->profile_max);
 }
 
 TEST(MpmSweep, WhatIsNotThereIsNotCompared) {
-  std::vector<SweepRun> runs{run_with(0.4, {2.2, 1.0, 0.0}, 1.1),
-                             run_with(0.1, {2.0, 1.0, 0.0}, 1.0)};
+  std::vector<study::SweepRun> runs{run_with(0.4, {2.2, 1.0, 0.0}, 1.1),
+                                    run_with(0.1, {2.0, 1.0, 0.0}, 1.0)};
   runs[1].summary.status = "failed";
-  EXPECT_EQ(series_of(runs)[0].finest(), &runs[0]) << "a failed run is no reference";
-  EXPECT_FALSE(change_between(runs[0], runs[1]));
-  EXPECT_FALSE(change_when_quartered(series_of(runs)[0]));
+  EXPECT_EQ(study::series_of(runs)[0].finest(), &runs[0]) << "a failed run is no reference";
+  EXPECT_FALSE(study::change_between(runs[0], runs[1]));
+  EXPECT_FALSE(study::change_when_quartered(study::series_of(runs)[0]));
   runs[1].summary = {};
-  EXPECT_EQ(series_of(runs)[0].finest(), nullptr) << "a run is still to come";
+  EXPECT_EQ(study::series_of(runs)[0].finest(), nullptr) << "a run is still to come";
 }
 
 TEST(MpmSweep, VariesEverythingAndKeepsTheRestOfTheScene) {
-  InputFile file = InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml");
-  const SceneFile scene = read_scene(file);
+  input::InputFile file = input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml");
+  const input::SceneFile scene = input::read_scene(file);
   std::vector<std::string> notes;
-  const Sweep sweep = with_defaults({}, scene.scene, false, notes);
-  const std::vector<SweepRun> runs = runs_of(scene, sweep);
+  const input::Sweep sweep = study::with_defaults({}, scene.scene, false, notes);
+  const std::vector<study::SweepRun> runs = study::runs_of(scene, sweep);
   EXPECT_EQ(runs.size(), mpm::transfer_names.size() * 3 * 4);  // h of 50, 25, 12.5 mm, four steps
   std::set<std::string> names;
-  for (const SweepRun& run : runs) {
+  for (const study::SweepRun& run : runs) {
     names.insert(run.scene().name);
     EXPECT_EQ(run.scene().end_time, 1.2);
     EXPECT_EQ(run.scene().frame_interval, 0.0);
@@ -87,25 +87,26 @@ TEST(MpmSweep, VariesEverythingAndKeepsTheRestOfTheScene) {
   EXPECT_EQ(names.size(), runs.size());
   EXPECT_EQ(runs[0].scene().name, "flat_mu_i_pic_cubic_h0.05_courant0.8");
   EXPECT_EQ(runs[11].scene().h, 0.0125);
-  Sweep more = sweep;
+  input::Sweep more = sweep;
   more.points_per_cell = {9, 4};
   more.reference = {0.00625};
-  const std::vector<SweepRun> all = runs_of(scene, more);
+  const std::vector<study::SweepRun> all = study::runs_of(scene, more);
   ASSERT_EQ(all.size(), 2 * runs.size() + 4);
   EXPECT_EQ(all[0].scene().name, "flat_mu_i_pic_cubic_9ppc_h0.05_courant0.8");
   EXPECT_EQ(all.back().scene().name, "flat_mu_i_relaxed_cubic_h0.00625_courant0.1");
-  EXPECT_EQ(with_defaults({}, scene.scene, true, notes).cells, std::vector<double>{0.025});
-  Sweep fixed;
+  EXPECT_EQ(study::with_defaults({}, scene.scene, true, notes).cells, std::vector<double>{0.025});
+  input::Sweep fixed;
   fixed.dts = {1e-4};
-  EXPECT_TRUE(with_defaults(fixed, scene.scene, false, notes).courants.empty());
+  EXPECT_TRUE(study::with_defaults(fixed, scene.scene, false, notes).courants.empty());
 }
 
 TEST(MpmSweep, LeavesOutTransfersThatTheSceneRefuses) {
   const std::vector<std::string> sets{"domain.walls=\"periodic\"", "domain.top=\"slip\""};
-  InputFile file = InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml", sets);
-  const SceneFile scene = read_scene(file);
+  input::InputFile file =
+      input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml", sets);
+  const input::SceneFile scene = input::read_scene(file);
   std::vector<std::string> notes;
-  const Sweep sweep = with_defaults({}, scene.scene, true, notes);
+  const input::Sweep sweep = study::with_defaults({}, scene.scene, true, notes);
   EXPECT_EQ(sweep.transfers.size(), mpm::transfer_names.size() - 2);
   for (const mpm::Transfer transfer : sweep.transfers)
     EXPECT_TRUE(transfer != mpm::Transfer::xpic && transfer != mpm::Transfer::fmpm);
@@ -113,12 +114,12 @@ TEST(MpmSweep, LeavesOutTransfersThatTheSceneRefuses) {
   EXPECT_EQ(notes[0],
             "xpic is left out: a periodic edge or a wall that moves does not go with step.transfer "
             "= \"xpic\" yet; any other transfer does");
-  EXPECT_EQ(runs_of(scene, sweep).size(), sweep.transfers.size() * 2);
+  EXPECT_EQ(study::runs_of(scene, sweep).size(), sweep.transfers.size() * 2);
   // asked for by name it is an error, and not one of the cells
-  Sweep asked = sweep;
+  input::Sweep asked = sweep;
   asked.transfers = {mpm::Transfer::fmpm};
   try {
-    runs_of(scene, asked);
+    study::runs_of(scene, asked);
     ADD_FAILURE() << "no error";
   } catch (const InputError& error) {
     EXPECT_EQ(error.key(), "chart.transfers");

@@ -14,14 +14,14 @@
 #include <unistd.h>
 
 #include "app/command_line.hpp"
-#include "app/exact_flow.hpp"
-#include "app/finished_result.hpp"
-#include "app/grain_layer.hpp"
-#include "app/mpm_errors.hpp"
-#include "app/read_chart_set.hpp"
-#include "app/read_scene.hpp"
-#include "app/shipped_input.hpp"
-#include "pointdriver/tangent_convergence.hpp"
+#include "input/read_chart_set.hpp"
+#include "input/read_scene.hpp"
+#include "input/shipped_input.hpp"
+#include "pointdriver/study/tangent_convergence.hpp"
+#include "study/accuracy/errors.hpp"
+#include "study/accuracy/exact_flow.hpp"
+#include "study/accuracy/grain_layer.hpp"
+#include "study/run/finished_result.hpp"
 #include "tests/app/csv_table.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -55,7 +55,7 @@ class ChartSetTest : public testing::Test {
     return code;
   }
   nlohmann::json summary(const std::string& out) const {
-    return nlohmann::json::parse(text_of(base_ / out / "summary.json"));
+    return nlohmann::json::parse(study::text_of(base_ / out / "summary.json"));
   }
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(base_ / name) << text;
@@ -69,9 +69,9 @@ class ChartSetTest : public testing::Test {
 
 TEST(ReadChartSet, TheShippedSetIsSoundAndQuickReplacesKeys) {
   for (const bool quick : {false, true}) {
-    InputFile file = InputFile::parse(shipped_chart_set(), "all.toml");
-    ASSERT_TRUE(is_chart_set(file));
-    const ChartSet set = read_chart_set(file, "", quick);
+    input::InputFile file = input::InputFile::parse(input::shipped_chart_set(), "all.toml");
+    ASSERT_TRUE(input::is_chart_set(file));
+    const input::ChartSet set = input::read_chart_set(file, "", quick);
     ASSERT_GE(set.parts.size(), 12u);
     EXPECT_EQ(set.parts[0].command(), "repose chart point");
     EXPECT_EQ(set.parts[1].command(),
@@ -79,8 +79,8 @@ TEST(ReadChartSet, TheShippedSetIsSoundAndQuickReplacesKeys) {
     EXPECT_EQ(set.parts[2].name, "mu_i_transfers");
     EXPECT_EQ(set.parts[2].input, "flat_mu_i");
     // what it writes down makes the same set, with nothing left to replace
-    InputFile again = InputFile::parse(set.text, "input.toml");
-    const ChartSet same = read_chart_set(again, "", !quick);
+    input::InputFile again = input::InputFile::parse(set.text, "input.toml");
+    const input::ChartSet same = input::read_chart_set(again, "", !quick);
     ASSERT_EQ(same.parts.size(), set.parts.size());
     for (std::size_t i = 0; i < set.parts.size(); ++i) {
       EXPECT_EQ(same.parts[i].sets, set.parts[i].sets);
@@ -91,7 +91,7 @@ TEST(ReadChartSet, TheShippedSetIsSoundAndQuickReplacesKeys) {
 }
 
 TEST_F(ChartSetTest, TheShippedSetCanBeMade) {
-  const std::string file = write("all.toml", std::string(shipped_chart_set()));
+  const std::string file = write("all.toml", std::string(input::shipped_chart_set()));
   const std::array words{"repose", "check", file.c_str()};
   testing::internal::CaptureStdout();
   EXPECT_EQ(run_command_line(3, words.data()), 0);
@@ -104,17 +104,17 @@ TEST_F(ChartSetTest, EveryChartInSmallAndNothingTwice) {
   ASSERT_EQ(run({"all", "--quick"}, "all"), 0) << error_;
   const nlohmann::json first = summary("all");
   EXPECT_EQ(first["status"], "done");
-  InputFile file = InputFile::parse(shipped_chart_set(), "all.toml");
-  const ChartSet set = read_chart_set(file, "", true);
+  input::InputFile file = input::InputFile::parse(input::shipped_chart_set(), "all.toml");
+  const input::ChartSet set = input::read_chart_set(file, "", true);
   ASSERT_EQ(first["parts"].size(), set.parts.size());
-  const std::string page = text_of(base_ / "all/report.html");
+  const std::string page = study::text_of(base_ / "all/report.html");
   std::map<std::string, std::string> before;
-  for (const ChartPart& part : set.parts) {
+  for (const input::ChartPart& part : set.parts) {
     const fs::path folder = base_ / "all" / part.name;
     EXPECT_EQ(summary("all/" + part.name)["status"], "done") << part.name;
     EXPECT_NE(page.find("\"label\":\"" + part.name + "\""), page.npos) << part.name;
-    before[part.name] = text_of(folder / "summary.json");
-    if (part.kind == PartKind::stability) {
+    before[part.name] = study::text_of(folder / "summary.json");
+    if (part.kind == input::PartKind::stability) {
       for (const auto& made : summary("all/" + part.name)["files"])
         EXPECT_GT(fs::file_size(folder / made.get<std::string>()), 0u) << made;
       continue;
@@ -122,11 +122,11 @@ TEST_F(ChartSetTest, EveryChartInSmallAndNothingTwice) {
     EXPECT_GT(fs::file_size(folder / "chart.svg"), 1000u) << part.name;
     const Table chart = table_of(folder / "chart.csv");
     ASSERT_FALSE(chart.empty()) << part.name;
-    const char* column = part.kind == PartKind::point ? "wall_s"
-                         : part.kind == PartKind::fit ? "objective"
-                                                      : "kinetic_J_per_m";
+    const char* column = part.kind == input::PartKind::point ? "wall_s"
+                         : part.kind == input::PartKind::fit ? "objective"
+                                                             : "kinetic_J_per_m";
     EXPECT_EQ(finite_numbers(chart, column), chart.size()) << part.name;
-    if (part.kind != PartKind::mpm || part.name == "mu_i_steps") continue;
+    if (part.kind != input::PartKind::mpm || part.name == "mu_i_steps") continue;
     const Table errors = table_of(folder / "errors.csv");
     EXPECT_EQ(finite_numbers(errors, "kinetic_error"), errors.size()) << part.name;
     EXPECT_EQ(finite_numbers(errors, "momentum_error"), errors.size()) << part.name;
@@ -142,7 +142,8 @@ TEST_F(ChartSetTest, EveryChartInSmallAndNothingTwice) {
   const nlohmann::json second = summary("all");
   for (const auto& part : second["parts"]) EXPECT_EQ(part["kept"], true) << part["name"];
   for (const auto& [name, text] : before)
-    EXPECT_EQ(text_of(base_ / "all" / name / "summary.json"), text) << name << " was made again";
+    EXPECT_EQ(study::text_of(base_ / "all" / name / "summary.json"), text)
+        << name << " was made again";
 }
 
 // A step of 5 ms is three times h/c for cells of 25 mm: that chart fails, the one after it is made.
@@ -214,8 +215,8 @@ TEST_F(ChartSetTest, SaysWhatIsWrongBeforeAnythingIsRun) {
 
 /// The scene of a flow, with rows as charts have them.
 mpm::Scene flow_scene(const char* name) {
-  InputFile file = open_scene(name);
-  mpm::Scene scene = read_scene(file).scene;
+  input::InputFile file = input::open_scene(name);
+  mpm::Scene scene = input::read_scene(file).scene;
   scene.series_interval = scene.end_time / 60.0;
   return scene;
 }
@@ -225,8 +226,10 @@ mpm::Scene flow_scene(const char* name) {
 TEST(ExactFlows, StartAtRestAndEndSteady) {
   const mpm::Scene couette = flow_scene("couette");
   const double dt = couette.series_interval, mass = 1000.0 * 0.125 * 0.1;
-  const auto momentum = exact_shares(ExactFlow::couette, couette, Quantity::momentum);
-  const auto kinetic = exact_shares(ExactFlow::couette, couette, Quantity::kinetic);
+  const auto momentum =
+      study::exact_shares(input::ExactFlow::couette, couette, study::Quantity::momentum);
+  const auto kinetic =
+      study::exact_shares(input::ExactFlow::couette, couette, study::Quantity::kinetic);
   ASSERT_TRUE(momentum && kinetic);
   ASSERT_EQ(momentum->size(), 61);
   const double steady = 0.5 * mass * 0.2;
@@ -238,46 +241,48 @@ TEST(ExactFlows, StartAtRestAndEndSteady) {
   const double e = std::exp(-0.5 * M_PI * M_PI);
   EXPECT_NEAR((*kinetic)[60] / dt / (0.5 * mass * 0.04),
               1.0 / 3.0 - (4.0 * e - 2.0 * e * e) / (M_PI * M_PI), 1e-8);
-  EXPECT_FALSE(exact_shares(ExactFlow::couette, couette, Quantity::front));
+  EXPECT_FALSE(study::exact_shares(input::ExactFlow::couette, couette, study::Quantity::front));
 
   const mpm::Scene layer = flow_scene("inclined_layer");
-  const auto down = exact_shares(ExactFlow::inclined_layer, layer, Quantity::momentum);
+  const auto down =
+      study::exact_shares(input::ExactFlow::inclined_layer, layer, study::Quantity::momentum);
   ASSERT_TRUE(down);
   const double nu = 0.05, H = 0.1, U = 9.8 * std::sin(M_PI / 18.0) * H * H / nu;
   EXPECT_NEAR((*down)[0] / layer.series_interval / (mass * U), 0.0, 1e-6);
   const double slowest = std::exp(-M_PI * M_PI * nu * 0.25 / (4.0 * H * H));
   EXPECT_NEAR((*down)[60] / layer.series_interval / (mass * U),
               1.0 / 3.0 - 32.0 / std::pow(M_PI, 4) * slowest, 1e-6);
-  EXPECT_THROW(exact_shares(ExactFlow::couette, layer, Quantity::kinetic), InputError);
+  EXPECT_THROW(study::exact_shares(input::ExactFlow::couette, layer, study::Quantity::kinetic),
+               InputError);
 }
 
 // Bagnold's flow is what a layer of grains tends to. At 15 s the slowest mode, of half a second, is
 // gone. Mean of f = 1 − (1 − s)^{3/2} is 3/5, of its square 9/20; finite volumes are of second
 // order.
 TEST(ExactFlows, GrainsTendToBagnoldsFlow) {
-  const GrainLayer layer{.H = 0.05,
-                         .g = 9.8,
-                         .tilt = 23.0 * M_PI / 180.0,
-                         .mu_0 = 0.3819,
-                         .mu_d = 0.5718,
-                         .I_0 = 0.279,
-                         .d = 0.0053,
-                         .rho_p = 2000.0,
-                         .rho = 1300.0,
-                         .G = 4.0 * 254800.0};
-  const double U = bagnold_speed(layer);
+  const study::GrainLayer layer{.H = 0.05,
+                                .g = 9.8,
+                                .tilt = 23.0 * M_PI / 180.0,
+                                .mu_0 = 0.3819,
+                                .mu_d = 0.5718,
+                                .I_0 = 0.279,
+                                .d = 0.0053,
+                                .rho_p = 2000.0,
+                                .rho = 1300.0,
+                                .G = 4.0 * 254800.0};
+  const double U = study::bagnold_speed(layer);
   EXPECT_NEAR(U, 0.2746, 1e-4);
   std::array<double, 2> error{};
   for (const std::size_t k : {0, 1}) {
-    const LayerMeans late = starting_flow(layer, 1.0, 16, 50 * (k + 1)).back();
+    const study::LayerMeans late = study::starting_flow(layer, 1.0, 16, 50 * (k + 1)).back();
     error[k] = late.velocity / (0.6 * U) - 1.0;
     EXPECT_NEAR(late.square / (0.45 * U * U), 1.0, 2.0 * std::abs(error[k]));
   }
   EXPECT_NEAR(error[0] / error[1], 4.0, 0.2);
   EXPECT_LT(std::abs(error[1]), 1e-4);
   // halved steps change the start and the middle by less than 1e-4 of the end
-  const auto coarse = starting_flow(layer, 0.05, 41),
-             fine = starting_flow(layer, 0.05, 41, 100, 80);
+  const auto coarse = study::starting_flow(layer, 0.05, 41),
+             fine = study::starting_flow(layer, 0.05, 41, 100, 80);
   for (std::size_t i = 0; i < fine.size(); ++i)
     EXPECT_NEAR(coarse[i].velocity, fine[i].velocity, 1e-4 * fine.back().velocity);
 }
@@ -287,27 +292,29 @@ TEST(ExactFlows, GrainsTendToBagnoldsFlow) {
 // sin(tilt) t (1 − ct/2H) up to ct = μ_0H/tan(tilt) = 0.9 H, where the floor yields.
 TEST(ExactFlows, GrainsStartElastic) {
   const double H = 0.05, tilt = 23.0 * M_PI / 180.0, G = 1e6, rho = 1300.0;
-  const GrainLayer layer{.H = H,
-                         .g = 9.8,
-                         .tilt = tilt,
-                         .mu_0 = 0.3819,
-                         .mu_d = 0.5718,
-                         .I_0 = 0.279,
-                         .d = 0.0053,
-                         .rho_p = 2000.0,
-                         .rho = rho,
-                         .G = G};
+  const study::GrainLayer layer{.H = H,
+                                .g = 9.8,
+                                .tilt = tilt,
+                                .mu_0 = 0.3819,
+                                .mu_d = 0.5718,
+                                .I_0 = 0.279,
+                                .d = 0.0053,
+                                .rho_p = 2000.0,
+                                .rho = rho,
+                                .G = G};
   const double t = 0.5 * H / std::sqrt(G / rho);
   // what BDF2 smears of the front of the wave does not change what the floor carries
-  EXPECT_NEAR(starting_flow(layer, t, 2)[1].velocity, 9.8 * std::sin(tilt) * t * 0.75,
+  EXPECT_NEAR(study::starting_flow(layer, t, 2)[1].velocity, 9.8 * std::sin(tilt) * t * 0.75,
               1e-3 * 9.8 * std::sin(tilt) * t);
 }
 
 // The scene's own layer, and what it refuses.
 TEST(ExactFlows, BagnoldScene) {
   mpm::Scene scene = flow_scene("bagnold");
-  const auto momentum = exact_shares(ExactFlow::bagnold, scene, Quantity::momentum);
-  const auto kinetic = exact_shares(ExactFlow::bagnold, scene, Quantity::kinetic);
+  const auto momentum =
+      study::exact_shares(input::ExactFlow::bagnold, scene, study::Quantity::momentum);
+  const auto kinetic =
+      study::exact_shares(input::ExactFlow::bagnold, scene, study::Quantity::kinetic);
   ASSERT_TRUE(momentum && kinetic);
   ASSERT_EQ(momentum->size(), 61);
   const double mass = 1300.0 * 0.0625 * 0.05, steady = 0.6 * 0.2746 * mass * scene.series_interval;
@@ -317,8 +324,10 @@ TEST(ExactFlows, BagnoldScene) {
   // ⟨u²⟩ ≥ ⟨u⟩²
   EXPECT_GT((*kinetic)[60] * scene.series_interval * mass * 2.0, std::pow((*momentum)[60], 2));
   scene.tilt_deg = 31.0;
-  EXPECT_THROW(exact_shares(ExactFlow::bagnold, scene, Quantity::momentum), InputError);
-  EXPECT_THROW(exact_shares(ExactFlow::bagnold, flow_scene("inclined_layer"), Quantity::momentum),
+  EXPECT_THROW(study::exact_shares(input::ExactFlow::bagnold, scene, study::Quantity::momentum),
+               InputError);
+  EXPECT_THROW(study::exact_shares(input::ExactFlow::bagnold, flow_scene("inclined_layer"),
+                                   study::Quantity::momentum),
                InputError);
 }
 

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/command_line.hpp"
-#include "app/read_point_test.hpp"
 #include "calibration/optimise.hpp"
+#include "input/read_point_test.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {
@@ -38,9 +38,9 @@ points = 20
 /// Everything that is wrong with a text, one line each.
 std::string problems(const std::string& text, std::vector<std::string> sets = {}) {
   try {
-    InputFile file = InputFile::parse(text, "t.toml", sets);
-    read_point_test(file);
-  } catch (const BadInput& error) {
+    input::InputFile file = input::InputFile::parse(text, "t.toml", sets);
+    input::read_point_test(file);
+  } catch (const input::BadInput& error) {
     return error.what();
   }
   return "";
@@ -51,8 +51,8 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 TEST(ReadPointTest, reads_a_test) {
-  InputFile file = InputFile::parse(good, "t.toml");
-  const PointTestFile test = read_point_test(file);
+  input::InputFile file = input::InputFile::parse(good, "t.toml");
+  const input::PointTestFile test = input::read_point_test(file);
   ASSERT_EQ(test.test.path.legs.size(), 1u);
   EXPECT_TRUE(test.test.path.undrained);
   EXPECT_EQ(test.test.path.legs[0].spec().points, 20);

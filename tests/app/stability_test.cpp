@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "app/command_line.hpp"
-#include "app/stability/read_stability.hpp"
+#include "input/read_stability.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {

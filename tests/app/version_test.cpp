@@ -33,9 +33,10 @@ namespace fs = std::filesystem;
 class SolverDigest : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* file : {"models/law.hpp", "models/law.cpp", "mpm/step.cpp", "mpm/grid.hpp",
-                             "app/run_scene.cpp", "app/run_record.cpp", "app/figure.cpp",
-                             "cmake/Dependencies.cmake", "cmake/Flags.cmake", "README.md"})
+    for (const char* file :
+         {"models/law.hpp", "models/law.cpp", "mpm/step/step.cpp", "mpm/grid/grid.hpp",
+          "study/run/run_scene.cpp", "study/run/run_record.cpp", "app/figure.cpp",
+          "cmake/Dependencies.cmake", "cmake/Flags.cmake", "README.md"})
       write(file, file);
   }
   void write(const fs::path& file, const std::string& text) {
@@ -71,13 +72,14 @@ TEST_F(SolverDigest, ChangesWithWhatARunsResultDependsOn) {
   EXPECT_NE(digest("g++ 13 -O3"), first);
   std::string last = first;
   for (const char* file :
-       {"models/law.hpp", "models/law.cpp", "mpm/step.cpp", "mpm/grid.hpp", "app/run_scene.cpp",
-        "app/run_record.cpp", "cmake/Dependencies.cmake", "cmake/Flags.cmake"}) {
+       {"models/law.hpp", "models/law.cpp", "mpm/step/step.cpp", "mpm/grid/grid.hpp",
+        "study/run/run_scene.cpp", "study/run/run_record.cpp", "cmake/Dependencies.cmake",
+        "cmake/Flags.cmake"}) {
     write(file, "changed");
     const std::string next = digest();
     EXPECT_NE(next, last) << file;
     last = next;
   }
-  fs::remove(source_ / "mpm/grid.hpp");
+  fs::remove(source_ / "mpm/grid/grid.hpp");
   EXPECT_NE(digest(), last);
 }

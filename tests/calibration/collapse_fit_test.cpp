@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "app/collapse_simulator.hpp"
 #include "app/command_line.hpp"
+#include "input/collapse_simulator.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {
@@ -84,13 +84,13 @@ TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
   const fs::path& folder = scratch.path();
   std::ofstream(folder / "scene.toml") << scene_text;
   std::ofstream(folder / "fit.toml") << fit_text;
-  CollapseExperiment e;
-  InputFile input = InputFile::read(folder / "scene.toml");
-  e.scene = read_scene(input);
+  input::CollapseExperiment e;
+  input::InputFile input = input::InputFile::read(folder / "scene.toml");
+  e.scene = input::read_scene(input);
   e.law = e.scene.scene.bodies[0].law;
   e.channels = {"front_m", "height_m"};
   e.times = {0.1, 0.2, 0.3, 0.4, 0.5};
-  const auto simulator = make_collapse_simulator(e);
+  const auto simulator = input::make_collapse_simulator(e);
   std::vector<double> truth;
   for (const std::string& name : simulator->inputs()) {
     const auto found = e.law.values.find(name);

@@ -3,19 +3,20 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
-#include "calibration/twin.hpp"
 #include "calibration/uncertainty.hpp"
+#include "study/fit/twin.hpp"
 
 namespace repose::calibration {
 namespace {
 
 TEST(Coverage, IntervalsHoldTheTruthIn90To99PercentOf200Repeats) {
-  const Twin twin = cam_clay_twin();
-  std::vector<TwinTest> tests = cam_clay_tests();
+  const study::Twin twin = study::cam_clay_twin();
+  std::vector<study::TwinTest> tests = study::cam_clay_tests();
   constexpr int repeats = 200;
   std::vector<std::array<int, 5>> hit(repeats);
   tbb::parallel_for(0, repeats, [&](int k) {
-    const Problem problem = twin_problem(twin, tests, 0.01, static_cast<std::uint64_t>(k + 1));
+    const Problem problem =
+        study::twin_problem(twin, tests, 0.01, static_cast<std::uint64_t>(k + 1));
     const Eigen::VectorXd z = problem.space().coordinates(twin.truth_vector());
     const Optimum o = levenberg_marquardt(problem, z);
     const Uncertainty u = uncertainty(problem, o.z);

@@ -11,9 +11,9 @@
 #include <unistd.h>
 
 #include "app/command_line.hpp"
-#include "app/fit_record.hpp"
-#include "app/read_law.hpp"
-#include "calibration/twin.hpp"
+#include "input/read_law.hpp"
+#include "study/fit/fit_record.hpp"
+#include "study/fit/twin.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {
@@ -35,8 +35,8 @@ class FitCommand : public testing::Test {
 
   /// Undrained compression of London clay in kPa and per cent: units come from the names.
   static std::string undrained_table() {
-    calibration::Twin twin = calibration::cam_clay_twin("ln_v-ln_p");
-    const calibration::Target t = measure(twin, calibration::cam_clay_tests()[1]);
+    study::Twin twin = study::cam_clay_twin("ln_v-ln_p");
+    const calibration::Target t = study::measure(twin, study::cam_clay_tests()[1]);
     std::string text = "# made by the law itself\neps_a_percent,q_kPa,u_kPa\n";
     for (Eigen::Index i = 0; i < t.x.size(); ++i)
       text += fmt::format("{},{},{}\n", 100.0 * t.x[i], 1e-3 * t.channels[0].observed[i],
@@ -81,8 +81,8 @@ starts = 6
   std::string complaint(const std::string& text) const {
     write("bad.toml", text);
     try {
-      read_fit(path("bad.toml"), {}, 1);
-    } catch (const BadInput& error) {
+      input::read_fit(path("bad.toml"), {}, 1);
+    } catch (const input::BadInput& error) {
       const std::string all = error.what();
       const auto at = all.find("bad.toml:");
       return at == std::string::npos ? all : all.substr(at);
@@ -103,9 +103,9 @@ TEST_F(FitCommand, FindsTheParametersAndWritesALawThatReadsBack) {
   EXPECT_EQ(report["status"], "done");
   EXPECT_EQ(report["optima"].size(), 1u);
   EXPECT_TRUE(report["discrepancy"].empty());
-  InputFile law = InputFile::read(folder_ / "out/fitted.toml");
-  TomlReader root(law);
-  const LawSpec spec = read_law(root.table("law"));
+  input::InputFile law = input::InputFile::read(folder_ / "out/fitted.toml");
+  input::TomlReader root(law);
+  const LawSpec spec = input::read_law(root.table("law"));
   law.throw_if_bad();
   EXPECT_EQ(spec.values.at("M"), report["parameters"]["M"]["value"].get<double>());
   EXPECT_EQ(spec.values.at("lambda"), 0.161);
@@ -181,7 +181,7 @@ TEST_F(FitCommand, KappaStaysBelowLambdaWhereBoundsOverlap) {
   text = replaced(text, "kappa = { lower = 0.02, upper = 0.15, scale = \"log\" }",
                   "kappa = { lower = 0.02, upper = 0.15 }\nlambda = { lower = 0.05, upper = 0.4 }");
   write("fit.toml", text);
-  const FitFile file = read_fit(path("fit.toml"), {}, 1);
+  const input::FitFile file = input::read_fit(path("fit.toml"), {}, 1);
   ASSERT_EQ(file.notes.size(), 1u);
   EXPECT_EQ(file.notes[0], "kappa < lambda is kept by fitting kappa/lambda in [0.05, 0.999]");
   const calibration::ParameterSpace space(file.free);

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/twin.hpp"
 #include "calibration/uncertainty.hpp"
+#include "study/fit/twin.hpp"
 
 namespace repose::calibration {
 namespace {
@@ -19,13 +19,13 @@ TEST(FlowCurve, IntervalsHoldTheTruthOver40DrawsOfOnePercentNoise) {
                       {"rho_p", 2500.0},
                       {"rho_0", 1500.0},
                       {"K", 5e6}}};
-  Twin twin;
+  study::Twin twin;
   twin.law = &find_law(spec);
   twin.theta = checked_parameters(spec);
   twin.make_free("mu_0", 0.1, 0.42);
   twin.make_free("mu_d", 0.45, 1.5);
   twin.make_free("I_0", 0.01, 3.0, Scale::log);
-  TwinTest test;
+  study::TwinTest test;
   test.name = "flow curve";
   std::vector<double> rates;
   for (int i = 0; i < 24; ++i) {
@@ -37,7 +37,7 @@ TEST(FlowCurve, IntervalsHoldTheTruthOver40DrawsOfOnePercentNoise) {
   test.initial.p = 5e3;
   test.x = point::Quantity::I;
   test.y = {point::Quantity::mu};
-  const Target clean = measure(twin, test);
+  const Target clean = study::measure(twin, test);
   constexpr int draws = 40;
   std::array<int, 3> hits{};
   for (int k = 0; k < draws; ++k) {
@@ -59,9 +59,9 @@ TEST(FlowCurve, IntervalsHoldTheTruthOver40DrawsOfOnePercentNoise) {
     EXPECT_GE(hits[i], 33) << twin.free[i].name;
   }
   const Problem exact(ParameterSpace(twin.free), {clean});
-  EXPECT_LT(
-      worst_error(twin, exact.space().values(levenberg_marquardt(exact, exact.space().start()).z)),
-      1e-6);
+  EXPECT_LT(study::worst_error(
+                twin, exact.space().values(levenberg_marquardt(exact, exact.space().start()).z)),
+            1e-6);
 }
 
 TEST(FlowCurve, ANoiseInSharesOfZeroNeedsAnAbsolutePart) {

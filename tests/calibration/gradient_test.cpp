@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/twin.hpp"
+#include "study/fit/twin.hpp"
 #include "tests/calibration/toy.hpp"
 
 namespace repose::calibration {
@@ -49,11 +49,11 @@ void expect_exact(const Problem& problem, const VectorXd& z, double h, double to
 // 2e-8, and the truncation h⁴ f⁽⁵⁾/30 ~ 1e-11: 1e-6 leaves room for rows right after yield.
 TEST(Gradient, IsExactThroughYieldForEveryParameterAndTheInitialState) {
   for (const char* compression : {"v-ln_p", "ln_v-ln_p"}) {
-    Twin twin = cam_clay_twin(compression);
-    std::vector<TwinTest> tests = cam_clay_tests();
-    for (TwinTest& t : tests) t.tolerance = 1e-12;
+    study::Twin twin = study::cam_clay_twin(compression);
+    std::vector<study::TwinTest> tests = study::cam_clay_tests();
+    for (study::TwinTest& t : tests) t.tolerance = 1e-12;
     std::vector<Target> targets;
-    for (const TwinTest& t : tests) targets.push_back(measure(twin, t));
+    for (const study::TwinTest& t : tests) targets.push_back(study::measure(twin, t));
     // the overconsolidated test starts inside the yield surface and yields on its way
     FreeParameter ocr;
     ocr.name = "ocr of drained";
@@ -79,7 +79,7 @@ TEST(Gradient, IsExactThroughYieldForEveryParameterAndTheInitialState) {
 }
 
 TEST(Gradient, IsExactForTheFlowCurve) {
-  Twin twin;
+  study::Twin twin;
   const LawSpec spec{"mu_i",
                      {{"form", "elastoviscoplastic"}},
                      {{"mu_0", 0.38},
@@ -94,7 +94,7 @@ TEST(Gradient, IsExactForTheFlowCurve) {
   twin.make_free("mu_d", 0.5, 1.2);
   twin.make_free("mu_0", 0.1, 0.95, Scale::linear, 0);
   twin.make_free("I_0", 0.01, 3.0, Scale::log);
-  TwinTest curve;
+  study::TwinTest curve;
   curve.name = "flow curve";
   const std::vector<double> rates{3.0, 30.0, 300.0, 3000.0};
   curve.path = flow_curve_path(rates, point::Condition::constant_volume, 0.5);
@@ -102,7 +102,7 @@ TEST(Gradient, IsExactForTheFlowCurve) {
   curve.x = point::Quantity::shear_rate;
   curve.y = {point::Quantity::tau};
   curve.rows = Rows::leg_ends;
-  const Problem problem = twin_problem(twin, {curve});
+  const Problem problem = study::twin_problem(twin, {curve});
   VectorXd z(3);
   z << 0.3, 0.6, 0.5;
   expect_exact(problem, z, 1e-3, 1e-6, "mu(I)");
@@ -194,7 +194,7 @@ TEST(Residuals, ManyRowsDoNotDrownFew) {
 }
 
 TEST(ParameterSpace, RatiosKeepTheOrderEverywhere) {
-  const Twin twin = cam_clay_twin();
+  const study::Twin twin = study::cam_clay_twin();
   const ParameterSpace space(twin.free);
   for (std::size_t k = 0; k < 200; ++k) {
     const VectorXd z = space.spread_point(k, 3);
@@ -230,9 +230,9 @@ TEST(ParameterSpace, SaysWhatIsWrong) {
 }
 
 TEST(PointSimulator, RowsStandExactlyAtTheData) {
-  const Twin twin = cam_clay_twin();
-  for (const TwinTest& test : cam_clay_tests()) {
-    const Target t = measure(twin, test);
+  const study::Twin twin = study::cam_clay_twin();
+  for (const study::TwinTest& test : study::cam_clay_tests()) {
+    const Target t = study::measure(twin, test);
     ASSERT_EQ(t.x.size(), static_cast<Index>(test.abscissae.size()));
     for (Index i = 0; i < t.x.size(); ++i)
       // ends of legs are timed, x = rate · time: round-off of the time only
@@ -243,10 +243,10 @@ TEST(PointSimulator, RowsStandExactlyAtTheData) {
 }
 
 TEST(PointSimulator, RefusesRowsThatTheTestDoesNotPass) {
-  TwinTest test = cam_clay_tests()[0];
+  study::TwinTest test = study::cam_clay_tests()[0];
   test.abscissae = {100e3, 900e3};
   try {
-    measure(cam_clay_twin(), test);
+    study::measure(study::cam_clay_twin(), test);
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),

@@ -1,6 +1,6 @@
 // Synthetic data from every law, fitted from random starts: the parameters must come back.
 
-#include "calibration/twin.hpp"
+#include "study/fit/twin.hpp"
 
 #include <chrono>
 
@@ -16,7 +16,7 @@ struct Recovery {
   Spent spent;
 };
 
-Recovery recover(const Twin& twin, const Problem& problem, int starts) {
+Recovery recover(const study::Twin& twin, const Problem& problem, int starts) {
   FitOptions options;
   options.starts = starts + 1;
   options.starts_from = 1;  // start 0 is the middle of the bounds, the others are random
@@ -26,7 +26,7 @@ Recovery recover(const Twin& twin, const Problem& problem, int starts) {
   Recovery r;
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const StartResult& s : results)
-    if (worst_error(twin, problem.space().values(s.optimum.z)) < 1e-6) ++r.good;
+    if (study::worst_error(twin, problem.space().values(s.optimum.z)) < 1e-6) ++r.good;
   r.starts = static_cast<int>(results.size());
   r.spent = problem.spent();
   return r;
@@ -42,16 +42,16 @@ void report(const char* what, const Recovery& r) {
 // residuals 100-fold at most.
 TEST(Twin, CamClayComesBackFrom19Of20Starts) {
   for (const char* compression : {"v-ln_p", "ln_v-ln_p"}) {
-    const Twin twin = cam_clay_twin(compression);
-    const Problem problem = twin_problem(twin, cam_clay_tests());
+    const study::Twin twin = study::cam_clay_twin(compression);
+    const Problem problem = study::twin_problem(twin, study::cam_clay_tests());
     const Recovery r = recover(twin, problem, 20);
     report(compression, r);
     EXPECT_GE(r.good, 19) << compression;
   }
 }
 
-Twin flow_twin(const LawSpec& spec) {
-  Twin twin;
+study::Twin flow_twin(const LawSpec& spec) {
+  study::Twin twin;
   twin.law = &find_law(spec);
   twin.theta = checked_parameters(spec);
   return twin;
@@ -65,8 +65,8 @@ std::map<std::string, double> glass_beads(bool regularised) {
   return values;
 }
 
-TwinTest flow_curve(std::vector<double> rates, double p) {
-  TwinTest s;
+study::TwinTest flow_curve(std::vector<double> rates, double p) {
+  study::TwinTest s;
   s.name = "flow curve";
   s.path = flow_curve_path(rates, point::Condition::constant_volume, 0.5);
   s.initial.p = p;
@@ -84,14 +84,14 @@ std::vector<double> rates(double from, double to, int n) {
 
 TEST(Twin, FlowCurveOfMuIComesBackFrom19Of20Starts) {
   for (const bool regularised : {false, true}) {
-    Twin twin = flow_twin({"mu_i",
-                           {{"form", regularised ? "regularised" : "elastoviscoplastic"}},
-                           glass_beads(regularised)});
+    study::Twin twin = flow_twin({"mu_i",
+                                  {{"form", regularised ? "regularised" : "elastoviscoplastic"}},
+                                  glass_beads(regularised)});
     twin.make_free("mu_d", 0.3, 1.2);
     twin.make_free("mu_0", 0.1, 0.95, Scale::linear, 0);  // a ratio to mu_d
     twin.make_free("I_0", 0.01, 3.0, Scale::log);
     // I from 1e-3 to 10 at 5 kPa: γ̇ = I √(p/ρ_p)/d = 2700 I
-    const Problem problem = twin_problem(twin, {flow_curve(rates(2.7, 2.7e4, 25), 5e3)});
+    const Problem problem = study::twin_problem(twin, {flow_curve(rates(2.7, 2.7e4, 25), 5e3)});
     const Recovery r = recover(twin, problem, 20);
     report(regularised ? "mu(I), regularised" : "mu(I)", r);
     EXPECT_GE(r.good, 19) << regularised;
@@ -99,26 +99,26 @@ TEST(Twin, FlowCurveOfMuIComesBackFrom19Of20Starts) {
 }
 
 TEST(Twin, NewtonianComesBackFrom19Of20Starts) {
-  Twin twin =
+  study::Twin twin =
       flow_twin({"newtonian", {}, {{"eta", 0.5}, {"K", 26e3}, {"alpha", 7.0}, {"rho_0", 1e3}}});
   twin.make_free("eta", 1e-3, 1e2, Scale::log);
   twin.make_free("K", 1e3, 1e6, Scale::log);
-  TwinTest shear;
+  study::TwinTest shear;
   shear.name = "shear";
   shear.path = flow_curve_path(rates(0.1, 100.0, 10), point::Condition::constant_volume, 0.5);
   shear.initial.p = 1e3;
   shear.x = point::Quantity::shear_rate;
   shear.y = {point::Quantity::tau};
   shear.rows = Rows::leg_ends;
-  TwinTest squeeze;
+  study::TwinTest squeeze;
   squeeze.name = "squeeze";
-  squeeze.stages = {
-      stage(point::Kind::isotropic, point::Condition::drained, point::Quantity::eps_v, 0.05)};
+  squeeze.stages = {study::stage(point::Kind::isotropic, point::Condition::drained,
+                                 point::Quantity::eps_v, 0.05)};
   squeeze.initial.density = 1000.0;
   squeeze.x = point::Quantity::eps_v;
   squeeze.y = {point::Quantity::p};
-  squeeze.abscissae = evenly(0.0, 0.05, 10);
-  const Problem problem = twin_problem(twin, {shear, squeeze});
+  squeeze.abscissae = study::evenly(0.0, 0.05, 10);
+  const Problem problem = study::twin_problem(twin, {shear, squeeze});
   const Recovery r = recover(twin, problem, 20);
   report("newtonian", r);
   EXPECT_GE(r.good, 19);
@@ -134,8 +134,8 @@ long trials_to(const Optimum& o, double f) {
 // The same objective from the same starts: 1e-10 of the middle's, where every parameter is right to
 // 1e-4 or better.
 TEST(Twin, GradientsNeedAFifthOfBobyqasPaths) {
-  const Twin twin = cam_clay_twin();
-  const Problem problem = twin_problem(twin, cam_clay_tests());
+  const study::Twin twin = study::cam_clay_twin();
+  const Problem problem = study::twin_problem(twin, study::cam_clay_tests());
   Evaluation e;
   problem.evaluate(Eigen::VectorXd::Constant(5, 0.5), false, e);
   const double goal = 1e-10 * e.objective();
@@ -162,8 +162,8 @@ TEST(Twin, GradientsNeedAFifthOfBobyqasPaths) {
 
 // Every algorithm on the same problem from the same start: none fails, and all improve on it.
 TEST(Twin, EveryAlgorithmWorksOnCamClay) {
-  const Twin twin = cam_clay_twin();
-  const Problem problem = twin_problem(twin, cam_clay_tests());
+  const study::Twin twin = study::cam_clay_twin();
+  const Problem problem = study::twin_problem(twin, study::cam_clay_tests());
   const Eigen::VectorXd start = Eigen::VectorXd::Constant(5, 0.5);
   Evaluation e;
   problem.evaluate(start, false, e);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/twin.hpp"
+#include "study/fit/twin.hpp"
 #include "tests/calibration/toy.hpp"
 
 namespace repose::calibration {
@@ -122,8 +122,8 @@ TEST(Uncertainty, AMisfitBeyondTheNoiseWidensTheIntervalAndIsToldOf) {
 
 TEST(Uncertainty, TellsWhatTheDataDoNotDetermine) {
   // one undrained curve: neither Γ (the state starts from p and OCR) nor λ and κ apart from Λ
-  Twin twin = cam_clay_twin("ln_v-ln_p");
-  const Problem problem = twin_problem(twin, {cam_clay_tests()[1]});
+  study::Twin twin = study::cam_clay_twin("ln_v-ln_p");
+  const Problem problem = study::twin_problem(twin, {study::cam_clay_tests()[1]});
   const VectorXd z = problem.space().coordinates(twin.truth_vector());
   const Uncertainty u = uncertainty(problem, z);
   EXPECT_TRUE(std::isinf(u.standard_error[4]));
@@ -146,10 +146,10 @@ TEST(Uncertainty, AParameterAtItsBoundIsNotAMeasurement) {
 }
 
 TEST(Uncertainty, APriorHoldsWhatTheDataDoNot) {
-  Twin twin = cam_clay_twin();
+  study::Twin twin = study::cam_clay_twin();
   twin.free[3].prior = Prior{0.25, 0.02};
   const Problem problem =
-      twin_problem(twin, {cam_clay_tests()[0]});  // isotropic: nothing about M, ν
+      study::twin_problem(twin, {study::cam_clay_tests()[0]});  // isotropic: nothing about M, ν
   const Optimum o = levenberg_marquardt(problem, VectorXd::Constant(5, 0.4));
   const Uncertainty u = uncertainty(problem, o.z);
   EXPECT_NEAR(u.values[3], 0.25, 1e-6);

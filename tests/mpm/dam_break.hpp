@@ -14,7 +14,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "mpm/simulation.hpp"
+#include "mpm/step/simulation.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace repose::mpm {

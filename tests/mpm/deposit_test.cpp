@@ -1,4 +1,4 @@
-#include "mpm/deposit.hpp"
+#include "mpm/output/deposit.hpp"
 
 #include <algorithm>
 

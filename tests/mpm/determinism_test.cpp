@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "mpm/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 #include "tests/mpm/saved_state.hpp"
 #include "tests/mpm/scenes.hpp"
 
@@ -127,19 +127,19 @@ TEST(CheckpointTest, RefusesWhatIsNone) {
   const Scene scene = everything(Kernel::cubic);
   Simulation simulation(scene, 1);
   const ScratchFile file;
-  EXPECT_THROW(simulation.load(file.path()), IoError) << "absent";
+  EXPECT_THROW(simulation.load(file.path()), io::IoError) << "absent";
   {
     std::ofstream out(file.path());
     out << "not a checkpoint";
   }
-  EXPECT_THROW(simulation.load(file.path()), IoError);
+  EXPECT_THROW(simulation.load(file.path()), io::IoError);
   simulation.save(file.path());
   std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) / 2);
-  EXPECT_THROW(simulation.load(file.path()), IoError) << "cut short";
+  EXPECT_THROW(simulation.load(file.path()), io::IoError) << "cut short";
   Scene other = scene;
   other.bodies.pop_back();
   Simulation(other, 1).save(file.path());
-  EXPECT_THROW(simulation.load(file.path()), IoError) << "another number of bodies";
+  EXPECT_THROW(simulation.load(file.path()), io::IoError) << "another number of bodies";
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mpm/simulation.hpp"
+#include "mpm/step/simulation.hpp"
 #include "tests/mpm/manufactured_block.hpp"
 #include "tests/mpm/scenes.hpp"
 

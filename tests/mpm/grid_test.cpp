@@ -1,4 +1,4 @@
-#include "mpm/grid.hpp"
+#include "mpm/grid/grid.hpp"
 
 #include <set>
 

@@ -1,6 +1,6 @@
 /// Implicit viscosity: exact flows at steps far beyond the explicit limit, agreement with the
 /// explicit form as Δt → 0, energy, determinism, and the collapse of MUI-3 with r = 1e-4.
-#include "mpm/implicit_viscosity.hpp"
+#include "mpm/step/implicit_viscosity.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,4 +1,4 @@
-#include "mpm/kernel.hpp"
+#include "mpm/grid/kernel.hpp"
 
 #include <array>
 #include <limits>

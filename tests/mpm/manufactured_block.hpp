@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "mpm/simulation.hpp"
+#include "mpm/step/simulation.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace repose::mpm {

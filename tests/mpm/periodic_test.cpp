@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mpm/step_size.hpp"
+#include "mpm/step/step_size.hpp"
 #include "tests/mpm/saved_state.hpp"
 #include "tests/mpm/scenes.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "mpm/points.hpp"
+#include "mpm/grid/points.hpp"
 #include "tests/mpm/reference_grid.hpp"
 
 namespace repose::mpm {

@@ -1,11 +1,12 @@
 /// step.pressure_averaging: what it keeps, what it takes away, and what it must not do.
 
-#include "mpm/pressure_averaging.hpp"
+#include "mpm/step/pressure_averaging.hpp"
 
 #include <gtest/gtest.h>
 
 #include "models/scalar.hpp"
-#include "mpm/transfer.hpp"
+#include "mpm/output/rest_pressure.hpp"
+#include "mpm/step/transfer.hpp"
 #include "tests/mpm/point_cloud.hpp"
 #include "tests/mpm/saved_state.hpp"
 #include "tests/mpm/scenes.hpp"

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "mpm/scene.hpp"
+#include "mpm/scene/scene.hpp"
 
 namespace repose::mpm::reference {
 

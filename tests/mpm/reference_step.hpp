@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "models/scalar.hpp"
-#include "mpm/points.hpp"
+#include "mpm/grid/points.hpp"
 #include "tests/mpm/reference_grid.hpp"
 #include "tests/mpm/saved_state.hpp"
 

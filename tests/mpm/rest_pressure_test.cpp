@@ -1,6 +1,6 @@
 /// The instrument of docs/noise.md, on states that are known exactly.
 
-#include "mpm/rest_pressure.hpp"
+#include "mpm/output/rest_pressure.hpp"
 
 #include <gtest/gtest.h>
 

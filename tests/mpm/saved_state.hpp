@@ -14,8 +14,8 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
-#include "mpm/points.hpp"
-#include "mpm/simulation.hpp"
+#include "mpm/grid/points.hpp"
+#include "mpm/step/simulation.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::mpm {

@@ -1,5 +1,5 @@
 // What validate() refuses, with the key that a reader points at and the whole text.
-#include "mpm/scene.hpp"
+#include "mpm/scene/scene.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "mpm/simulation.hpp"
+#include "mpm/step/simulation.hpp"
 
 namespace repose::mpm {
 

@@ -1,13 +1,13 @@
 /// \file
 /// Growth in a Material Point shear cell against the plane wave of the same law.
 
-#include "mpm/shear_cell.hpp"
+#include "mpm/study/shear_cell.hpp"
 
 #include <numbers>
 
 #include <gtest/gtest.h>
 
-#include "pointdriver/plane_wave.hpp"
+#include "pointdriver/study/plane_wave.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace repose::mpm {

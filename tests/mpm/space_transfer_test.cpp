@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mpm/transfer.hpp"
+#include "mpm/step/transfer.hpp"
 
 namespace repose::mpm {
 namespace {

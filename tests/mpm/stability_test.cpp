@@ -6,10 +6,10 @@
 
 #include "models/law_material.hpp"
 #include "models/linearised_cam_clay.hpp"
-#include "mpm/blow_up.hpp"
-#include "mpm/failure_modes.hpp"
-#include "mpm/history.hpp"
-#include "mpm/ill_posed_points.hpp"
+#include "mpm/output/history.hpp"
+#include "mpm/study/blow_up.hpp"
+#include "mpm/study/failure_modes.hpp"
+#include "mpm/study/ill_posed_points.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace repose::mpm {

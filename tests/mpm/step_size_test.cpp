@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-#include "mpm/kernel.hpp"
+#include "mpm/grid/kernel.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace repose::mpm {

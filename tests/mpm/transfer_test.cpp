@@ -1,4 +1,4 @@
-#include "mpm/transfer.hpp"
+#include "mpm/step/transfer.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 /// The viscous operator by itself: symmetric, positive, blind to rigid motion, and the derivative
 /// of the law's impulse.
-#include "mpm/viscous_operator.hpp"
+#include "mpm/step/viscous_operator.hpp"
 
 #include <random>
 

@@ -1,4 +1,4 @@
-#include "mpm/walls.hpp"
+#include "mpm/boundary/walls.hpp"
 
 #include <functional>
 

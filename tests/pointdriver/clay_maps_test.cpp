@@ -1,7 +1,7 @@
 /// \file
 /// Maps of Cam-Clay's update: the exact one always has a result, the linearised one not beyond κ.
 
-#include "pointdriver/clay_maps.hpp"
+#include "pointdriver/study/clay_maps.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The mechanism itself: six rows on twelve rates.
-#include "pointdriver/control.hpp"
+#include "pointdriver/path/control.hpp"
 
 #include <gtest/gtest.h>
 

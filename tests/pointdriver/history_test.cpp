@@ -1,5 +1,5 @@
 // Prescribed histories: a table becomes a path, and what is wrong with one is said.
-#include "pointdriver/history.hpp"
+#include "pointdriver/path/history.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 /// \file
 /// Growth of plane waves measured with a law's update, against the dispersion relation.
 
-#include "pointdriver/plane_wave.hpp"
+#include "pointdriver/study/plane_wave.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Derivatives of curves: dual numbers against differences and against CVODES.
-#include "pointdriver/sensitivity.hpp"
+#include "pointdriver/integrate/sensitivity.hpp"
 
 #include <gtest/gtest.h>
 

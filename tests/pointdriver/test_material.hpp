@@ -3,7 +3,7 @@
 /// Laws and tests that several test files drive.
 
 #include "models/registry.hpp"
-#include "pointdriver/simulate.hpp"
+#include "pointdriver/integrate/simulate.hpp"
 #include "tests/pointdriver/exact_solutions.hpp"
 
 namespace repose::point {

@@ -1,0 +1,114 @@
+#include "input/read_chart_set.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "input/read_chart.hpp"
+#include "input/toml_reader.hpp"
+
+namespace repose::input {
+namespace {
+
+/// An entry with the keys of its quick table in place of its own, or without that table.
+toml::table entry_as_asked(const toml::table& entry, bool quick) {
+  toml::table asked = entry;
+  const toml::table* replaced = entry["quick"].as_table();
+  if (replaced == nullptr) return asked;
+  asked.erase("quick");
+  if (quick)
+    for (const auto& [key, value] : *replaced)
+      value.visit([&, &name = key](const auto& node) { asked.insert_or_assign(name, node); });
+  return asked;
+}
+
+bool is_folder_name(const std::string& name) {
+  return !name.empty() && name.front() != '.' &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+         });
+}
+
+/// A file lies beside the set; what has neither dot nor slash is the name of a shipped scene.
+std::string found_input(const std::string& input, const std::filesystem::path& folder) {
+  if (input.find_first_of("./") == std::string::npos) return input;
+  return std::filesystem::absolute(folder / input).lexically_normal().string();
+}
+
+std::vector<std::string> sets_of(const toml::table& entry, PartKind kind) {
+  std::vector<std::string> sets;
+  for (const auto& [key, value] : entry) {
+    const std::string_view name = key.str();
+    if (name == "name" || name == "kind" || name == "input" || name == "set") continue;
+    sets.push_back(fmt::format("{}.{}={}", kind == PartKind::stability ? "stability" : "chart",
+                               name, value_text(value)));
+  }
+  if (const toml::array* list = entry["set"].as_array())
+    for (const toml::node& one : *list) sets.push_back(*one.value<std::string>());
+  return sets;
+}
+
+/// A --set option for a shell.
+std::string quoted(const std::string& set) { return fmt::format("--set '{}'", set); }
+
+}  // namespace
+
+std::string ChartPart::command() const {
+  std::string text =
+      kind == PartKind::stability
+          ? "repose stability"
+          : fmt::format("repose chart {}", part_kinds[static_cast<std::size_t>(kind)]);
+  if (!input.empty()) text += " " + input;
+  for (const std::string& set : sets) text += " " + quoted(set);
+  return text;
+}
+
+bool is_chart_set(const InputFile& file) {
+  return file.root().contains("chart") && file.root()["chart"].is_array();
+}
+
+ChartSet read_chart_set(InputFile& file, const std::filesystem::path& folder, bool quick) {
+  ChartSet set;
+  TomlReader root(file);
+  std::vector<TomlReader> entries = root.tables("chart", "a chart");
+  file.throw_if_bad();  // from here on entry i is reader i
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    TomlReader& reader = entries[i];
+    reader.expect_any();
+    const toml::table* given = (*file.root()["chart"].as_array())[i].as_table();
+    ChartPart part;
+    if (!reader.has("kind"))
+      reader.report("kind", fmt::format("{} needs kind, one of {}", reader.path(),
+                                        fmt::join(part_kinds, ", ")));
+    part.kind = static_cast<PartKind>(
+        reader.choice("kind", {part_kinds.begin(), part_kinds.end()}, part_kinds.size()));
+    part.name = reader.text(
+        "name", "of its sub-folder",
+        std::string(part_kinds[static_cast<std::size_t>(part.kind) % part_kinds.size()]));
+    if (!is_folder_name(part.name))
+      reader.report(
+          "name",
+          fmt::format("the name '{}' cannot be a folder's: letters, digits, _ - .", part.name));
+    if (std::any_of(set.parts.begin(), set.parts.end(),
+                    [&](const ChartPart& other) { return other.name == part.name; }))
+      reader.report("name", fmt::format("there are two charts called '{}'", part.name));
+    part.input = found_input(reader.text("input", "a file or a shipped scene", ""), folder);
+    if (given->contains("quick") && !(*given)["quick"].is_table())
+      reader.report("quick", "quick is a table of the keys that --quick replaces");
+    const toml::table entry = entry_as_asked(*given, quick);
+    const toml::array* list = entry["set"].as_array();
+    if (entry.contains("set") && (list == nullptr || !list->is_homogeneous<std::string>()))
+      reader.report("set", "set is a list of texts, as in [\"scene.end_time=0.6\"]");
+    part.origin = file.origin(reader.path());
+    set.text += "\n[[chart]]\n";
+    for (const auto& [key, value] : entry)
+      set.text += key.str() == "input" ? fmt::format("input = '{}'\n", part.input)
+                                       : fmt::format("{} = {}\n", key.str(), value_text(value));
+    if (file.ok()) part.sets = sets_of(entry, part.kind);
+    set.parts.push_back(std::move(part));
+  }
+  file.throw_if_bad();
+  return set;
+}
+
+}  // namespace repose::input

@@ -1,0 +1,54 @@
+#pragma once
+/// \file
+/// A fit file: [law], [fit], [[target]], [solver], [uncertainty] (docs/interface.md, Fit).
+
+#include <filesystem>
+
+#include "calibration/multistart.hpp"
+#include "input/collapse_simulator.hpp"
+#include "input/input_file.hpp"
+#include "models/registry.hpp"
+
+namespace repose::input {
+
+/// What the pictures need of a target beside its numbers.
+struct TargetAbout {
+  std::string data;     ///< the table as the fit file names it
+  std::string x_label;  ///< "eps_a"
+};
+
+struct FitFile {
+  std::string name;
+  LawSpec law;  ///< with the free parameters at their start
+  const LawInfo* info = nullptr;
+  std::vector<calibration::FreeParameter> free;
+  /// Which parameter of the law a free one is; "" for initial and shared quantities.
+  std::vector<std::string> law_key;
+  std::vector<calibration::Target> targets;
+  /// The targets with their scenes' coarse settings, searched first; empty if none has any.
+  std::vector<calibration::Target> coarse;
+  long fine_evaluations = 60;
+  std::vector<TargetAbout> about;
+  bool balance = true;
+  calibration::FitOptions options;
+  bool profiles = true;
+  int bootstrap = 0;  ///< repeats
+  /// Standard deviation of the fine scenes' discretisation error over the change from coarse to
+  /// fine at the coarse optimum.
+  double resolution_error = 1.0;
+  std::shared_ptr<CollapseCount> runs = std::make_shared<CollapseCount>();
+  std::string resolved;            ///< the input as TOML, --set included, tables by absolute path
+  std::string fingerprint;         ///< of everything that the result of a start depends on
+  std::vector<std::string> notes;  ///< what was made of the input that the user may not expect
+};
+
+/// Reads and validates a fit and its tables. Throws BadInput with everything that is wrong, IoError
+/// for files that cannot be read.
+/// cache: where runs of scenes are kept.
+FitFile read_fit(const std::filesystem::path& file, std::span<const std::string> overrides,
+                 std::uint64_t seed, const std::filesystem::path& cache = {});
+
+/// The law with fitted values in place of the free parameters' starts.
+LawSpec fitted_law(const FitFile& file, const Eigen::VectorXd& values);
+
+}  // namespace repose::input

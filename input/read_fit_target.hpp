@@ -1,0 +1,61 @@
+#pragma once
+/// \file
+/// A [[target]] of a fit: an experiment, its table and how the two are compared.
+
+#include <filesystem>
+
+#include "calibration/point_simulator.hpp"
+#include "input/fit_table.hpp"
+#include "input/read_fit.hpp"
+#include "input/read_fit_parameters.hpp"
+
+namespace repose::input {
+
+class TargetReader {
+ public:
+  /// theta: the law's parameters at the start, NaN where the law derives them. cache: where runs of
+  /// scenes are kept.
+  TargetReader(InputFile& file, FitFile& out, FitParameters& parameters, std::vector<double> theta,
+               std::filesystem::path cache)
+      : file_(file),
+        out_(out),
+        parameters_(parameters),
+        theta_(std::move(theta)),
+        cache_(std::move(cache)) {}
+
+  /// Appends the target; a broken one is reported and left out.
+  void read(TomlReader& table);
+
+  /// Does a target have coarse settings of its own?
+  bool has_coarse() const { return has_coarse_; }
+
+ private:
+  /// What of a point test is compared with the table; x and y lack the names that no curve has.
+  struct Compared {
+    std::optional<point::Quantity> x;
+    std::vector<point::Quantity> y;
+    calibration::Compare rows;
+  };
+
+  void read_scene_target(TomlReader& table, const FitTable& data, calibration::Target target,
+                         TargetAbout about);
+  // read_fit_point_target.cpp
+  void read_point_target(TomlReader& table, const FitTable& data, Compared compared,
+                         calibration::Target target, TargetAbout about);
+  void read_initial_freedom(TomlReader& table, calibration::Target& target,
+                            InitialConditions& initial);
+  void read_test(TomlReader& table, point::Quantity x, const FitTable& data,
+                 calibration::Compare compare, calibration::PointExperiment& e,
+                 calibration::Target& target);
+  void read_flow_curve(TomlReader& test, point::Quantity x, const FitTable& data,
+                       calibration::PointExperiment& e);
+
+  InputFile& file_;
+  FitFile& out_;
+  FitParameters& parameters_;
+  std::vector<double> theta_;
+  std::filesystem::path cache_;
+  bool has_coarse_ = false;
+};
+
+}  // namespace repose::input

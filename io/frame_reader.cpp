@@ -1,0 +1,42 @@
+#include "io/frame_reader.hpp"
+
+#include <cerrno>
+#include <fstream>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "io/atomic_file.hpp"
+#include "io/vtkhdf.hpp"
+
+namespace repose::io {
+
+std::vector<FrameEntry> read_frame_series(const std::filesystem::path& series) {
+  errno = 0;
+  std::ifstream in(series);
+  if (!in) throw IoError(series, "cannot read", errno);
+  std::vector<FrameEntry> frames;
+  try {
+    const auto json = nlohmann::json::parse(in);
+    for (const auto& entry : json.at("files"))
+      frames.push_back({entry.at("name"), entry.at("time")});
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(series, std::string("not a series of frames: ") + error.what());
+  }
+  for (const FrameEntry& frame : frames)
+    if (frame.file_name.empty() || frame.file_name.find('/') != std::string::npos)
+      throw IoError(series, "names '" + frame.file_name + "', which is no file beside it");
+  return frames;
+}
+
+Frame read_frame(const std::filesystem::path& file) {
+  errno = 0;
+  if (!std::ifstream(file)) throw IoError(file, "cannot read", errno);
+  try {
+    return read_vtkhdf(file);
+  } catch (const std::runtime_error& error) {
+    throw IoError(file, std::string("not a frame: ") + error.what());
+  }
+}
+
+}  // namespace repose::io

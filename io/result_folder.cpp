@@ -1,0 +1,241 @@
+#include "io/result_folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace repose::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// summary.json comes first: it is what declares a result complete.
+constexpr std::array<std::string_view, 56> outputs{"summary.json",
+                                                   "checkpoint.h5",
+                                                   "series.csv",
+                                                   "profile.csv",
+                                                   "curve.csv",
+                                                   "final.svg",
+                                                   "curve.svg",
+                                                   "fit.json",
+                                                   "fitted.toml",
+                                                   "fit.svg",
+                                                   "chart.csv",
+                                                   "chart.svg",
+                                                   "table.csv",
+                                                   "error_map.csv",
+                                                   "error_map.svg",
+                                                   "history.csv",
+                                                   "history.svg",
+                                                   "cost.svg",
+                                                   "chart.json",
+                                                   "predictions.csv",
+                                                   "clay_steps.csv",
+                                                   "clay_steps.svg",
+                                                   "clay_kappa.csv",
+                                                   "clay_kappa.svg",
+                                                   "clay_paths.csv",
+                                                   "clay_paths.svg",
+                                                   "mu_i_boundary.csv",
+                                                   "mu_i_boundary.svg",
+                                                   "mu_i_refinement.csv",
+                                                   "mu_i_refinement.svg",
+                                                   "mu_i_curves.csv",
+                                                   "mu_i_curves.svg",
+                                                   "mu_i_shear_signs.csv",
+                                                   "mu_i_shear_signs.svg",
+                                                   "mu_i_shear_refinement.csv",
+                                                   "mu_i_shear_refinement.svg",
+                                                   "mu_i_collapse.csv",
+                                                   "mu_i_collapse.svg",
+                                                   "step_limits.csv",
+                                                   "step_limits.svg",
+                                                   "mpm_failures.csv",
+                                                   "mpm_failures.svg",
+                                                   "collapse.csv",
+                                                   "collapse.svg",
+                                                   "errors.csv",
+                                                   "work_precision.svg",
+                                                   "reference_profile.csv",
+                                                   "reference_kinetic.csv",
+                                                   "reference_momentum.csv",
+                                                   "tangent.csv",
+                                                   "tangent.svg",
+                                                   "accuracy.csv",
+                                                   "accuracy.svg",
+                                                   "estimate.csv",
+                                                   "advised.toml",
+                                                   "fit_diagnostics.svg"};
+
+/// NAME_00012.hdf or NAME.hdf.series, or a temporary of one of them.
+bool is_frame_file(std::string name) {
+  constexpr std::string_view part = ".repose-part";
+  if (name.starts_with('.') && name.ends_with(part))
+    name = name.substr(1, name.size() - 1 - part.size());
+  if (name.ends_with(".hdf.series")) return true;
+  constexpr std::string_view suffix = ".hdf";
+  if (!name.ends_with(suffix)) return false;
+  name.resize(name.size() - suffix.size());
+  const std::size_t bar = name.rfind('_');
+  return bar != std::string::npos && bar > 0 && name.size() - bar - 1 >= 5 &&
+         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(bar) + 1, name.end(),
+                     [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+/// Removes a file or link if it is there; a folder of that name is not ours and stays.
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(path, error);
+  if (!fs::exists(status) || fs::is_directory(status)) return;
+  fs::remove(path, error);
+  if (error) throw IoError(path, "cannot remove the older result", error.value());
+}
+
+void remove_frames(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(fs::symlink_status(folder, error))) return;
+  std::vector<fs::path> ours;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (is_frame_file(it->path().filename().string())) ours.push_back(it->path());
+  if (error) throw IoError(folder, "cannot list the older frames", error.value());
+  for (const fs::path& path : ours) remove_file(path);
+  ::rmdir(folder.c_str());  // goes only if it is empty now
+}
+
+std::string header_line(std::span<const std::string> columns) {
+  if (columns.empty()) throw std::invalid_argument("table: it has no columns");
+  for (const std::string& name : columns)
+    if (name.empty() || name.find_first_of(",\"\r\n") != std::string::npos)
+      throw std::invalid_argument("table: '" + name + "' cannot be the name of a column");
+  return fmt::format("{}\n", fmt::join(columns, ","));
+}
+
+int open_table(const fs::path& path, int flags) {
+  const int fd = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+  if (fd < 0) throw IoError(path, "cannot open for writing", errno);
+  return fd;
+}
+
+/// The number of bytes of `text` to keep: the header and every complete row whose first value is at
+/// most `last`.
+std::size_t bytes_to_keep(std::string_view text, std::size_t header, double last) {
+  std::size_t kept = header;
+  while (true) {
+    const std::size_t end = text.find('\n', kept);
+    if (end == std::string_view::npos) return kept;
+    double first = 0.0;
+    const auto parsed = std::from_chars(text.data() + kept, text.data() + end, first);
+    if (parsed.ec != std::errc() || !(first <= last)) return kept;
+    kept = end + 1;
+  }
+}
+
+}  // namespace
+
+ResultFolder::ResultFolder(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  const fs::file_status status = fs::status(folder_, error);
+  if (fs::exists(status) && !fs::is_directory(status))
+    throw IoError(folder_, "cannot be a result folder: it is a file");
+  fs::create_directories(folder_, error);
+  if (error) throw IoError(folder_, "cannot create the result folder", error.value());
+}
+
+fs::path ResultFolder::default_path(std::string_view name) { return fs::path("results") / name; }
+
+std::span<const std::string_view> ResultFolder::output_names() { return outputs; }
+
+void ResultFolder::remove_old_outputs() const {
+  for (const std::string_view name : outputs) {
+    remove_file(file(name));
+    remove_file(temporary_name(file(name)));
+  }
+  remove_file(temporary_name(file("input.toml")));
+  remove_frames(frames());
+}
+
+void ResultFolder::write_file(std::string_view name, std::string_view content) const {
+  write_atomically(file(name), content);
+}
+
+RowWriter::RowWriter(fs::path path, std::size_t columns, int fd)
+    : path_(std::move(path)),
+      columns_(columns),
+      fd_(fd) {}
+
+RowWriter::RowWriter(RowWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      columns_(other.columns_),
+      fd_(std::exchange(other.fd_, -1)) {}
+
+RowWriter::~RowWriter() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+RowWriter RowWriter::create(fs::path path, std::vector<std::string> columns) {
+  const std::string header = header_line(columns);
+  const int fd = open_table(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
+  RowWriter writer(std::move(path), columns.size(), fd);
+  writer.append(header);
+  return writer;
+}
+
+RowWriter RowWriter::continued(fs::path path, std::vector<std::string> columns, double last) {
+  if (!fs::exists(path)) return create(std::move(path), std::move(columns));
+  const std::string header = header_line(columns);
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw IoError(path, "cannot read", errno);
+  const std::string older = std::move(text).str();
+  if (!older.starts_with(header)) {
+    // A run that was killed at once may have left a part of the header.
+    if (header.starts_with(older)) return create(std::move(path), std::move(columns));
+    throw IoError(path, "cannot be continued: its first line is '" +
+                            older.substr(0, older.find('\n')) + "', expected '" +
+                            header.substr(0, header.size() - 1) + "'");
+  }
+
+  const int fd = open_table(path, O_WRONLY | O_APPEND);
+  RowWriter writer(std::move(path), columns.size(), fd);
+  const std::size_t kept = bytes_to_keep(older, header.size(), last);
+  if (::ftruncate(fd, static_cast<off_t>(kept)) != 0)
+    throw IoError(writer.path_, "cannot cut off the later rows", errno);
+  return writer;
+}
+
+void RowWriter::row(std::span<const double> values) {
+  if (values.size() != columns_)
+    throw std::invalid_argument(
+        fmt::format("table {}: {} values for {} columns", path_.string(), values.size(), columns_));
+  append(fmt::format("{}\n", fmt::join(values, ",")));
+}
+
+void RowWriter::append(std::string_view line) {
+  const off_t before = ::lseek(fd_, 0, SEEK_END);
+  while (!line.empty()) {
+    const ssize_t written = ::write(fd_, line.data(), line.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      const int error = errno;
+      // Best effort: a device has nothing to take back.
+      if (before < 0 || ::ftruncate(fd_, before) != 0) errno = error;
+      throw IoError(path_, "cannot write", error);
+    }
+    line.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace repose::io

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/atomic_file.hpp"
+
+namespace repose::io {
+
+/// The folder that one run, test or fit leaves behind.
+class ResultFolder {
+ public:
+  /// Opens the folder, creating it and its parents where they are missing.
+  /// Errors: IoError, also for a path that is a file.
+  explicit ResultFolder(std::filesystem::path folder);
+
+  /// results/NAME: where a result goes when no -o is given.
+  static std::filesystem::path default_path(std::string_view name);
+
+  const std::filesystem::path& path() const { return folder_; }
+  std::filesystem::path file(std::string_view name) const { return folder_ / name; }
+  std::filesystem::path frames() const { return folder_ / "frames"; }
+  std::filesystem::path checkpoint() const { return folder_ / "checkpoint.h5"; }
+
+  /// Clears what an older result left, so that it cannot be taken for part of a new one: the files
+  /// of output_names(), frames (NAME_00012.hdf, NAME.hdf.series in frames/) and temporaries of
+  /// killed runs. input.toml stays, since writing the new one replaces it. Anything else in the
+  /// folder is somebody else's and is not touched. Not for a run that resumes. Errors: IoError.
+  void remove_old_outputs() const;
+
+  /// The names that repose may write into a result folder, input.toml and frames/ aside.
+  static std::span<const std::string_view> output_names();
+
+  /// Writes folder/name as a whole or not at all (write_atomically).
+  void write_file(std::string_view name, std::string_view content) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// A CSV table that grows row by row while a run goes on. Each row reaches the file as soon as it
+/// is given, and after any failure the file holds complete rows only: a row that was cut short
+/// (disk full) is taken back before IoError is thrown; the same row may then be given again.
+class RowWriter {
+ public:
+  /// A new table with one header line; an older file of that name is overwritten.
+  /// columns: names with units ("front_m"), at least one, without comma, quote or line break.
+  /// Errors: IoError; std::invalid_argument for the names.
+  static RowWriter create(std::filesystem::path path, std::vector<std::string> columns);
+
+  /// Takes up a table after a restart: rows whose first column is at most `last` stay, what follows
+  /// is cut off. A missing file is begun anew. Errors: as create; IoError if the file has another
+  /// header.
+  static RowWriter continued(std::filesystem::path path, std::vector<std::string> columns,
+                             double last);
+
+  RowWriter(RowWriter&& other) noexcept;
+  RowWriter& operator=(RowWriter&&) = delete;
+  ~RowWriter();
+
+  /// Appends one row: as many values as columns, each in the fewest digits that read back as the
+  /// same double; not-a-number appears as nan. Errors: IoError; std::invalid_argument for the
+  /// count.
+  void row(std::span<const double> values);
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  RowWriter(std::filesystem::path path, std::size_t columns, int fd);
+  void append(std::string_view line);
+
+  std::filesystem::path path_;
+  std::size_t columns_;
+  int fd_;
+};
+
+}  // namespace repose::io

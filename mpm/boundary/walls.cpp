@@ -1,0 +1,235 @@
+#include "mpm/boundary/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace repose::mpm {
+namespace {
+
+/// Velocity across a wall and along it.
+template <int dim>
+struct Parts {
+  double n = 0.0;
+  std::array<double, dim - 1> t{};
+  friend Parts operator-(const Parts& x, const Parts& y) {
+    Parts r{x.n - y.n, {}};
+    for (std::size_t i = 0; i < r.t.size(); ++i) r.t[i] = x.t[i] - y.t[i];
+    return r;
+  }
+  friend double dot(const Parts& x, const Parts& y) {
+    double sum = x.n * y.n;
+    for (std::size_t i = 0; i < x.t.size(); ++i) sum += x.t[i] * y.t[i];
+    return sum;
+  }
+};
+
+/// The i-th of the axes that lie in a wall across `normal`.
+constexpr std::size_t along(std::size_t normal, std::size_t i) { return i < normal ? i : i + 1; }
+
+/// One node of the triple behind, on and inside a wall, in the wall's own axes.
+template <int dim>
+struct WallNode {
+  NodeBlockOf<dim>* block = nullptr;  // null: the node does not exist (nothing near)
+  std::size_t place = 0;
+  std::size_t normal = 0;
+  std::int32_t index = -1;  // of the block
+
+  double m() const { return block ? block->mirrored_mass[place] : 0.0; }
+  Parts<dim> before_forces() const { return block ? read(block->u) : Parts<dim>{}; }
+  Parts<dim> after_forces() const { return block ? read(block->v) : Parts<dim>{}; }
+  /// A scalar that points average is even in every wall.
+  static void mirror_extra(const WallNode& a, const WallNode& c) {
+    const double m = a.m() + c.m();
+    if (m == 0.0) return;
+    const double even = (a.m() * a.extra() + c.m() * c.extra()) / m;
+    if (a.block) a.block->extra[a.place] = even;
+    if (c.block) c.block->extra[c.place] = even;
+  }
+  double real_mass() const { return block ? block->mass[place] : 0.0; }
+  void set(double mirrored, const Parts<dim>& u, const Parts<dim>& v) const {
+    if (!block) return;
+    block->mirrored_mass[place] = mirrored;
+    write(block->u, u);
+    write(block->v, v);
+  }
+
+ private:
+  using Vectors = std::array<typename NodeBlockOf<dim>::Nodes, dim>;
+  double extra() const { return block ? block->extra[place] : 0.0; }
+  Parts<dim> read(const Vectors& of) const {
+    Parts<dim> parts{of[normal][place], {}};
+    for (std::size_t i = 0; i < parts.t.size(); ++i) parts.t[i] = of[along(normal, i)][place];
+    return parts;
+  }
+  void write(Vectors& to, const Parts<dim>& parts) const {
+    to[normal][place] = parts.n;
+    for (std::size_t i = 0; i < parts.t.size(); ++i) to[along(normal, i)][place] = parts.t[i];
+  }
+};
+
+template <int dim>
+WallNode<dim> wall_node(GridOf<dim>& grid, const typename GridOf<dim>::Index& at,
+                        std::size_t normal) {
+  const typename GridOf<dim>::NodeRef node = grid.node(at);
+  const auto index = node.block ? node.block - grid.node_blocks.data() : -1;
+  return {node.block, node.place, normal, static_cast<std::int32_t>(index)};
+}
+
+/// The velocities of a triple, and what mirroring makes of them.
+template <int dim>
+struct Triple {
+  Parts<dim> a, b, c;
+  friend Triple operator-(const Triple& x, const Triple& y) {
+    return {x.a - y.a, x.b - y.b, x.c - y.c};
+  }
+
+  /// Seen from a wall that slides along itself, in the first of its axes.
+  Triple moved(double by) const {
+    Triple r = *this;
+    for (Parts<dim>* parts : {&r.a, &r.b, &r.c}) parts->t[0] += by;
+    return r;
+  }
+
+  /// Normal odd; tangential a mixture of even (stick = 0) and odd (stick = 1).
+  Triple mirrored(double m_a, double m_c, double stick) const {
+    const double share = m_a + m_c > 0.0 ? 1.0 / (m_a + m_c) : 0.0;
+    const double n_c = (m_c * c.n - m_a * a.n) * share;
+    Triple r{{-n_c, {}}, {0.0, {}}, {n_c, {}}};
+    for (std::size_t i = 0; i < r.a.t.size(); ++i) {
+      const double even = (m_c * c.t[i] + m_a * a.t[i]) * share;
+      const double odd = (m_c * c.t[i] - m_a * a.t[i]) * share;
+      r.a.t[i] = (1.0 - stick) * even - stick * odd;
+      r.b.t[i] = (1.0 - stick) * b.t[i];
+      r.c.t[i] = (1.0 - stick) * even + stick * odd;
+    }
+    return r;
+  }
+};
+
+/// The share φ of sticking: from the impulses of the wall on the material, that is from its
+/// momentum without and with the constraint. Negative: parting, the wall cannot pull.
+template <int dim>
+double coulomb_share(const Triple<dim>& v, double m_a, double m_b, double m_c, double friction,
+                     double inward) {
+  const Triple<dim> stuck = v.mirrored(m_a, m_c, 1.0);
+  const double J_n = inward * ((m_c - m_a) * stuck.c.n - (m_a * v.a.n + m_b * v.b.n + m_c * v.c.n));
+  if (!(J_n > 0.0)) return -1.0;
+  std::array<double, dim - 1> J{};
+  for (std::size_t i = 0; i < J.size(); ++i)
+    J[i] = m_a * v.a.t[i] + m_b * v.b.t[i] + m_c * v.c.t[i] - (m_c - m_a) * stuck.c.t[i];
+  const double J_t = dim == 2 ? std::abs(J.front()) : std::hypot(J.front(), J.back());
+  return J_t > friction * J_n ? friction * J_n / J_t : 1.0;
+}
+
+/// `inward` is +1 where the inside lies on the positive side of the wall, else −1.
+template <int dim>
+WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>& a,
+                           const WallNode<dim>& b, const WallNode<dim>& c,
+                           std::vector<MirroredTriple>* record) {
+  const double m_a = a.m();
+  const double m_b = b.m();
+  const double m_c = c.m();
+  if (m_a + m_b + m_c == 0.0) return {};
+  WallNode<dim>::mirror_extra(a, c);
+  const Triple<dim> u{a.before_forces(), b.before_forces(), c.before_forces()};
+  const Triple<dim> v{a.after_forces(), b.after_forces(), c.after_forces()};
+  double stick = wall.kind == Wall::Kind::no_slip ? 1.0 : 0.0;
+  if (wall.kind == Wall::Kind::friction) {
+    stick = coulomb_share(v, m_a, m_b, m_c, wall.friction, inward);
+    if (stick < 0.0) return {};
+  }
+  if (record != nullptr) {
+    const auto place = [](const WallNode<dim>& n) {
+      return MirroredTriple::Node{n.index, static_cast<std::int32_t>(n.place)};
+    };
+    record->push_back({{place(a), place(b), place(c)}, a.normal == 0, m_a, m_c, stick});
+  }
+  const Triple<dim> u_new = u.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
+  const Triple<dim> v_new = v.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
+  a.set(m_a + m_c, u_new.a, v_new.a);
+  b.set(2.0 * m_b, u_new.b, v_new.b);
+  c.set(m_a + m_c, u_new.c, v_new.c);
+  const std::array<double, 3> m{a.real_mass(), b.real_mass(), c.real_mass()};
+  const auto inner = [&](const Triple<dim>& x, const Triple<dim>& y) {
+    return m[0] * dot(x.a, y.a) + m[1] * dot(x.b, y.b) + m[2] * dot(x.c, y.c);
+  };
+  const Triple<dim> kick = v - u;  // Δt(f + mg)/m
+  const auto dragged = [&](const Triple<dim>& x) {
+    return m[0] * x.a.t[0] + m[1] * x.b.t[0] + m[2] * x.c.t[0];
+  };
+  return {0.5 * (inner(u_new, u_new) - inner(u, u)), 0.5 * (inner(v_new, v_new) - inner(v, v)),
+          inner(kick, u_new - u), wall.speed * dragged(u_new - u), wall.speed * dragged(v_new - v)};
+}
+
+/// A wall across an axis, at the node index `line` of it.
+template <int dim>
+WallEffect apply_wall(GridOf<dim>& grid, const Wall& wall, std::size_t normal, int line, int inward,
+                      std::vector<MirroredTriple>* record) {
+  WallEffect total;
+  if (wall.kind == Wall::Kind::open || wall.kind == Wall::Kind::periodic) return total;
+  const int block = grid.block_of_cell(normal, line);
+  for (const NodeBlockOf<dim>& nb : grid.node_blocks) {
+    if (nb.at[normal] != block) continue;
+    const int count = Shape<dim>::nodes / Shape<dim>::cells[normal];
+    for (int n = 0; n < count; ++n) {  // the block's nodes on the wall
+      typename GridOf<dim>::Index index{};
+      int rest = n;
+      for (std::size_t i = 0; i + 1 < index.size(); ++i) {
+        const std::size_t axis = along(normal, i);
+        index[axis] = GridOf<dim>::first(axis, nb.at[axis]) + rest % Shape<dim>::cells[axis];
+        rest /= Shape<dim>::cells[axis];
+      }
+      const auto at = [&](int offset) {
+        index[normal] = line + offset;
+        return wall_node(grid, index, normal);
+      };
+      const WallEffect here = apply_to_triple(wall, inward, at(-inward), at(0), at(inward), record);
+      total += here;
+    }
+  }
+  return total;
+}
+
+}  // namespace
+
+template <int dim>
+WallEffect apply_walls(GridOf<dim>& grid, const Walls& walls, std::vector<MirroredTriple>* record) {
+  if (record != nullptr) record->clear();
+  // one axis after the other: the mirrored masses of the first make the fields exactly odd or even
+  // in x, which a following mirror keeps, so that all conditions hold in the corners
+  WallEffect total;
+  for (std::size_t axis = 0; axis < dim; ++axis) {
+    total += apply_wall(grid, walls.low(axis), axis, 0, 1, record);
+    total += apply_wall(grid, walls.high(axis), axis, grid.cells()[axis], -1, record);
+  }
+  return total;
+}
+
+template WallEffect apply_walls(GridOf<2>&, const Walls&, std::vector<MirroredTriple>*);
+template WallEffect apply_walls(GridOf<3>&, const Walls&, std::vector<MirroredTriple>*);
+
+void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity) {
+  for (const MirroredTriple& at : record) {
+    const auto component = [&](std::size_t k, bool x) -> double* {
+      if (at.node[k].block < 0) return nullptr;
+      NodeField& nodes = velocity[static_cast<std::size_t>(at.node[k].block)];
+      return &(x ? nodes.x : nodes.y)[static_cast<std::size_t>(at.node[k].place)];
+    };
+    const auto read = [&](std::size_t k) {
+      const double* n = component(k, at.normal_is_x);
+      return n != nullptr ? Parts<2>{*n, {*component(k, !at.normal_is_x)}} : Parts<2>{};
+    };
+    const Triple<2> mirrored =
+        Triple<2>{read(0), read(1), read(2)}.mirrored(at.m_a, at.m_c, at.stick);
+    const auto write = [&](std::size_t k, const Parts<2>& v) {
+      if (at.node[k].block < 0) return;
+      *component(k, at.normal_is_x) = v.n;
+      *component(k, !at.normal_is_x) = v.t[0];
+    };
+    write(0, mirrored.a);
+    write(1, mirrored.b);
+    write(2, mirrored.c);
+  }
+}
+
+}  // namespace repose::mpm

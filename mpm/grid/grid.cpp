@@ -1,0 +1,202 @@
+#include "mpm/grid/grid.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "models/scalar.hpp"
+
+namespace repose::mpm {
+
+template <int dim>
+GridOf<dim>::GridOf(double h, const Index& cells) : h_(h),
+                                                    cells_(cells) {
+  std::size_t count = 1;
+  for (std::size_t a = 0; a < cells.size(); ++a) {
+    blocks_[a] = (cells[a] + 2) / Shape<dim>::cells[a] + 3;
+    count *= static_cast<std::size_t>(blocks_[a]);
+  }
+  point_table_.assign(count, -1);
+  node_table_.assign(count, -1);
+}
+
+template <int dim>
+std::size_t GridOf<dim>::table_index(const Index& block) const {
+  std::size_t index = 0;
+  for (std::size_t a = block.size(); a-- > 0;)
+    index = index * static_cast<std::size_t>(blocks_[a]) + static_cast<std::size_t>(block[a]);
+  return index;
+}
+
+template <int dim>
+typename GridOf<dim>::Index GridOf<dim>::block_at(std::size_t table_index) const {
+  Index block{};
+  for (std::size_t a = 0; a < block.size(); ++a) {
+    const auto n = static_cast<std::size_t>(blocks_[a]);
+    block[a] = static_cast<int>(table_index % n);
+    table_index /= n;
+  }
+  return block;
+}
+
+template <int dim>
+int GridOf<dim>::place_in(const Index& block, const Index& index) {
+  int place = 0;
+  for (std::size_t a = block.size(); a-- > 0;)
+    place = place * Shape<dim>::cells[a] + index[a] - first(a, block[a]);
+  return place;
+}
+
+template <int dim>
+bool GridOf<dim>::inside(const Index& block) const {
+  for (std::size_t a = 0; a < block.size(); ++a)
+    if (block[a] < 0 || block[a] >= blocks_[a]) return false;
+  return true;
+}
+
+template <int dim>
+std::array<std::int32_t, Shape<dim>::around> GridOf<dim>::around(
+    const Index& block, const std::vector<std::int32_t>& table) const {
+  std::array<std::int32_t, Shape<dim>::around> found{};
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    Index near = Shape<dim>::neighbour(k);
+    for (std::size_t a = 0; a < near.size(); ++a) near[a] += block[a];
+    found[k] = inside(near) ? table[table_index(near)] : -1;
+  }
+  return found;
+}
+
+template <int dim>
+void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
+  constexpr auto nodes = static_cast<std::size_t>(Shape<dim>::nodes);
+  const double inv_h = 1.0 / h_;
+  // key of a point: block, then cell within the block
+  std::vector<std::vector<std::uint32_t>> keys(bodies.size());
+  std::vector<std::size_t> per_block(point_table_.size(), 0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const PointsOf<dim>& points = bodies[b];
+    keys[b].assign(points.slots(), 0);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.slots(), 4096), [&](const auto& r) {
+      for (std::size_t k = r.begin(); k != r.end(); ++k) {
+        if (points.id[k] < 0) continue;
+        Index cell{}, at{};
+        for (std::size_t a = 0; a < cell.size(); ++a) {
+          cell[a] = static_cast<int>(std::floor(points[Layout<dim>::x + a][k] * inv_h));
+          at[a] = block_of_cell(a, cell[a]);
+        }
+        keys[b][k] = static_cast<std::uint32_t>(table_index(at) * nodes) +
+                     static_cast<std::uint32_t>(place_in(at, cell));
+      }
+    });
+    for (std::size_t k = 0; k < points.slots(); ++k)
+      if (points.id[k] >= 0) ++per_block[keys[b][k] / nodes];
+  }
+
+  const std::vector<PointBlockOf<dim>> before = std::exchange(point_blocks, {});
+  for (std::size_t block = 0; block < per_block.size(); ++block) {
+    point_table_[block] = -1;
+    if (per_block[block] == 0) continue;
+    point_table_[block] = static_cast<std::int32_t>(point_blocks.size());
+    PointBlockOf<dim>& fresh = point_blocks.emplace_back();
+    fresh.at = block_at(block);
+    fresh.range.resize(bodies.size());
+  }
+  for (const PointBlockOf<dim>& old : before) {
+    const std::int32_t now = point_table_[table_index(old.at)];
+    if (now >= 0) point_blocks[static_cast<std::size_t>(now)].rest = old.rest;
+  }
+
+  const auto cell_slot = [&](std::uint32_t key) {
+    return static_cast<std::size_t>(point_table_[key / nodes]) * nodes + key % nodes;
+  };
+  std::vector<std::size_t> start(point_blocks.size() * nodes);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    PointsOf<dim>& points = bodies[b];
+    // counting sort with the ranges of the blocks rounded up to whole packs
+    std::fill(start.begin(), start.end(), 0);
+    for (std::size_t k = 0; k < points.slots(); ++k)
+      if (points.id[k] >= 0) ++start[cell_slot(keys[b][k])];
+    std::size_t next = 0;
+    for (std::size_t block = 0; block < point_blocks.size(); ++block) {
+      const std::size_t first_key = block * nodes;
+      Range& range = point_blocks[block].range[b];
+      range.begin = next;
+      for (std::size_t key = first_key; key < first_key + nodes; ++key) {
+        const std::size_t in_cell = start[key];
+        start[key] = next;
+        next += in_cell;
+      }
+      range.count = next - range.begin;
+      next = range.begin + padded(range.count);
+    }
+    std::vector<std::uint32_t> order(next, 0);
+    std::vector<bool> is_padding(next, true);
+    for (std::size_t k = 0; k < points.slots(); ++k) {
+      if (points.id[k] < 0) continue;
+      const std::size_t slot = start[cell_slot(keys[b][k])]++;
+      order[slot] = static_cast<std::uint32_t>(k);
+      is_padding[slot] = false;
+    }
+    for (const PointBlockOf<dim>& pb : point_blocks) {
+      const Range& range = pb.range[b];
+      for (std::size_t k = range.count; k < padded(range.count); ++k)
+        order[range.begin + k] = order[range.begin + range.count - 1];
+    }
+    rearrange(points, order, is_padding);
+  }
+  connect();
+}
+
+template <int dim>
+void GridOf<dim>::restore(std::vector<PointBlockOf<dim>> blocks) {
+  point_blocks = std::move(blocks);
+  std::fill(point_table_.begin(), point_table_.end(), -1);
+  for (std::size_t k = 0; k < point_blocks.size(); ++k)
+    point_table_.at(table_index(point_blocks[k].at)) = static_cast<std::int32_t>(k);
+  connect();
+}
+
+template <int dim>
+void GridOf<dim>::connect() {
+  std::fill(node_table_.begin(), node_table_.end(), -1);
+  node_blocks.clear();
+  std::vector<char> live(node_table_.size(), 0);
+  for (const PointBlockOf<dim>& pb : point_blocks)
+    for (std::size_t k = 0; k < Shape<dim>::around; ++k) {
+      Index near = Shape<dim>::neighbour(k);
+      for (std::size_t a = 0; a < near.size(); ++a) near[a] += pb.at[a];
+      if (inside(near)) live[table_index(near)] = 1;
+    }
+  for (std::size_t block = 0; block < live.size(); ++block) {
+    if (!live[block]) continue;
+    node_table_[block] = static_cast<std::int32_t>(node_blocks.size());
+    node_blocks.emplace_back().at = block_at(block);
+  }
+  for (PointBlockOf<dim>& pb : point_blocks) pb.node_block = around(pb.at, node_table_);
+  for (NodeBlockOf<dim>& nb : node_blocks) nb.point_block = around(nb.at, point_table_);
+  tiles.resize(point_blocks.size());
+}
+
+template <int dim>
+const PointBlockOf<dim>* GridOf<dim>::point_block(const Index& block) const {
+  if (!inside(block)) return nullptr;
+  const std::int32_t index = point_table_[table_index(block)];
+  return index < 0 ? nullptr : &point_blocks[static_cast<std::size_t>(index)];
+}
+
+template <int dim>
+typename GridOf<dim>::NodeRef GridOf<dim>::node(const Index& index) {
+  Index block{};
+  for (std::size_t a = 0; a < block.size(); ++a) block[a] = block_of_cell(a, index[a]);
+  const std::int32_t found = node_table_[table_index(block)];
+  if (found < 0) return {nullptr, 0};
+  return {&node_blocks[static_cast<std::size_t>(found)],
+          static_cast<std::size_t>(place_in(block, index))};
+}
+
+template class GridOf<2>;
+template class GridOf<3>;
+
+}  // namespace repose::mpm

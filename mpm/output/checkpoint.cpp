@@ -1,0 +1,250 @@
+/// The whole state of a simulation in one HDF5 file. Everything that the bits of the following
+/// steps depend on is in it, the order of the points included.
+
+#include <bit>
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include "io/atomic_file.hpp"
+#include "mpm/step/simulation_impl.hpp"
+
+namespace repose::mpm {
+namespace {
+
+constexpr std::int64_t format_version = 4;
+
+/// An open HDF5 object, closed by its own function.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
+    if (id < 0) throw std::runtime_error(fmt::format("HDF5 could not {}", what));
+  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+template <class T>
+hid_t type_of();
+template <>
+hid_t type_of<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+hid_t type_of<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+
+template <class T>
+void write(hid_t file, const std::string& name, const std::vector<T>& values) {
+  const hsize_t n = values.size();
+  const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a data space");
+  const Handle set(
+      H5Dcreate2(file, name.c_str(), type_of<T>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+      H5Dclose, "create a data set");
+  if (n > 0 && H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    throw std::runtime_error(fmt::format("HDF5 could not write {}", name));
+}
+
+template <class T>
+std::vector<T> read(hid_t file, const std::string& name) {
+  const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, ("find " + name).c_str());
+  const Handle space(H5Dget_space(set), H5Sclose, "read a data space");
+  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  if (!values.empty() &&
+      H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
+  return values;
+}
+
+/// Every scalar that a run carries along, in one fixed order for both directions.
+template <class Impl, class Real, class Whole>
+void each_scalar(Impl& s, Real&& real, Whole&& whole) {
+  real(s.time);
+  real(s.last_dt);
+  real(s.dt_min);
+  real(s.dt_max);
+  real(s.drift);
+  real(s.fixed_step_excess);
+  real(s.viscous_step_excess);
+  real(s.first_dt);
+  real(s.signals.speed);
+  real(s.signals.signal);
+  real(s.signals.viscous_rate);
+  real(s.node_share);
+  real(s.ledger.start);
+  real(s.ledger.start_elastic);
+  real(s.ledger.stress_work);
+  real(s.ledger.transfer_loss);
+  real(s.ledger.wall_loss);
+  real(s.ledger.outflow);
+  real(s.ledger.outflow_elastic);
+  real(s.ledger.outflow_mass);
+  real(s.ledger.kinetic);
+  real(s.ledger.power);
+  real(s.highest_energy);
+  whole(s.steps);
+  whole(s.point_steps);
+  whole(s.sorts);
+  whole(s.wall_corrections);
+  whole(s.newton_iterations);
+  whole(s.cg_iterations);
+}
+
+/// Turns HDF5's own error printing off for a while.
+class Quiet {
+ public:
+  Quiet() {
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  H5E_auto2_t function_ = nullptr;
+  void* data_ = nullptr;
+};
+
+}  // namespace
+
+template <int dim>
+void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
+  const Quiet quiet;
+  const Impl& s = *this;
+  // assembled in memory, so that the disk sees one plain write that is whole or absent
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
+  H5Pset_fapl_core(access, 1 << 20, false);
+  const Handle file(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+                    "create a file in memory");
+
+  std::vector<double> reals;
+  std::vector<std::int64_t> wholes{format_version, s.must_sort ? 1 : 0,
+                                   static_cast<std::int64_t>(pack_size)};
+  each_scalar(
+      s, [&](double x) { reals.push_back(x); }, [&](std::int64_t x) { wholes.push_back(x); });
+  write(file, "reals", reals);
+  write(file, "wholes", wholes);
+
+  std::vector<std::int64_t> blocks;
+  for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
+    blocks.insert(blocks.end(), pb.at.begin(), pb.at.end());
+    for (const Range& range : pb.range) {
+      blocks.push_back(static_cast<std::int64_t>(range.begin));
+      blocks.push_back(static_cast<std::int64_t>(range.count));
+    }
+  }
+  write(file, "blocks", blocks);
+  // the rest of every block; and of those that sleep beside points awake, the push
+  std::vector<double> rests;
+  std::vector<double> pushes;
+  for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
+    const Rest& rest = pb.rest;
+    rests.insert(
+        rests.end(),
+        {rest.at_rest, rest.asleep ? 1.0 : 0.0, static_cast<double>(rest.count), rest.signals.speed,
+         rest.signals.signal, rest.signals.viscous_rate, rest.push.empty() ? 0.0 : 1.0});
+    pushes.insert(pushes.end(), rest.push.begin(), rest.push.end());
+  }
+  write(file, "rests", rests);
+  write(file, "pushes", pushes);
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const PointsOf<dim>& points = s.bodies[b];
+    write(file, fmt::format("body{}_id", b), points.id);
+    for (std::size_t f = 0; f < points.fields; ++f)
+      write(file, fmt::format("body{}_field{}", b, f), points.values(f));
+  }
+  H5Fflush(file, H5F_SCOPE_GLOBAL);
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) throw std::runtime_error("HDF5 could not give the checkpoint's size");
+  std::string image(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, image.data(), image.size()) < 0)
+    throw std::runtime_error("HDF5 could not give the checkpoint's bytes");
+  io::write_atomically(path, image);
+}
+
+template <int dim>
+void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
+  const Quiet quiet;
+  Impl& s = *this;
+  const auto reject = [&](const std::string& why) { throw io::IoError(path, why); };
+  try {
+    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
+                      "open it as a checkpoint");
+    const std::vector<double> reals = read<double>(file, "reals");
+    const std::vector<std::int64_t> wholes = read<std::int64_t>(file, "wholes");
+    if (wholes.size() < 3 || wholes[0] != format_version)
+      reject("it is a checkpoint of another version of repose");
+    if (wholes[2] != static_cast<std::int64_t>(pack_size))
+      reject("it was saved by a build for another width of vectors");
+    s.tiles_are_current = false;
+    std::size_t next_real = 0;
+    std::size_t next_whole = 3;
+    s.must_sort = wholes[1] != 0;
+    each_scalar(
+        s, [&](double& x) { x = reals.at(next_real++); },
+        [&](std::int64_t& x) { x = wholes.at(next_whole++); });
+
+    for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+      PointsOf<dim>& points = s.bodies[b];
+      points.id = read<std::int64_t>(file, fmt::format("body{}_id", b));
+      for (std::size_t f = 0; f < points.fields; ++f) {
+        const auto values = read<double>(file, fmt::format("body{}_field{}", b, f));
+        if (values.size() != points.id.size()) reject("its arrays differ in length");
+        points.assign(f, values);
+      }
+      points.count = 0;
+      for (const std::int64_t id : points.id) points.count += id >= 0 ? 1 : 0;
+    }
+
+    const std::vector<std::int64_t> blocks = read<std::int64_t>(file, "blocks");
+    const std::size_t width = dim + 2 * s.bodies.size();
+    if (blocks.size() % width != 0) reject("it holds another number of bodies");
+    std::vector<PointBlockOf<dim>> restored(blocks.size() / width);
+    for (std::size_t k = 0; k < restored.size(); ++k) {
+      const std::int64_t* row = blocks.data() + k * width;
+      for (std::size_t i = 0; i < dim; ++i) restored[k].at[i] = static_cast<int>(row[i]);
+      for (std::size_t b = 0; b < s.bodies.size(); ++b)
+        restored[k].range.push_back({static_cast<std::size_t>(row[dim + 2 * b]),
+                                     static_cast<std::size_t>(row[dim + 2 * b + 1])});
+    }
+    const std::vector<double> rests = read<double>(file, "rests");
+    const std::vector<double> pushes = read<double>(file, "pushes");
+    auto push = pushes.begin();
+    for (std::size_t k = 0; k < restored.size(); ++k) {
+      const auto at = [&](std::size_t i) { return rests.at(7 * k + i); };
+      Rest& rest = restored[k].rest;
+      rest.at_rest = at(0);
+      rest.asleep = at(1) != 0.0;
+      rest.count = static_cast<std::size_t>(at(2));
+      rest.signals = {at(3), at(4), at(5)};
+      if (at(6) == 0.0) continue;
+      constexpr std::ptrdiff_t of_block = dim * Shape<dim>::tile_nodes;
+      if (pushes.end() - push < of_block) reject("its sleeping blocks are incomplete");
+      rest.push.assign(push, push + of_block);
+      push += of_block;
+    }
+    s.grid.restore(std::move(restored));
+    s.mark_sleepers();
+  } catch (const io::IoError&) {
+    throw;
+  } catch (const std::exception& e) {
+    reject(e.what());
+  }
+}
+
+void Simulation::save(const std::filesystem::path& path) const {
+  visit([&](const auto& s) { s.save(path); });
+}
+void Simulation::load(const std::filesystem::path& path) {
+  visit([&](auto& s) { s.load(path); });
+}
+
+}  // namespace repose::mpm

@@ -1,0 +1,150 @@
+#include "mpm/scene/fill.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace repose::mpm {
+namespace {
+
+/// Runs f and makes the keys of its InputErrors relative to the body.
+template <class F>
+auto within(const std::string& table, F&& f) {
+  try {
+    return f();
+  } catch (const InputError& e) {
+    throw InputError(table + "." + e.key(), e.what());
+  }
+}
+
+template <int dim>
+void append(PointsOf<dim>& points, const std::array<double, dim>& x, const Body& body,
+            const InitialPoint& at, double volume, std::int64_t id) {
+  using F = Layout<dim>;
+  // a body that turns does so about z
+  const double cx = body.origin[0] + 0.5 * body.size[0];
+  const double cy = body.origin[1] + 0.5 * body.size[1];
+  const std::array<double, 3> turning{-body.spin * (x[1] - cy), body.spin * (x[0] - cx), 0.0};
+  for (std::size_t i = 0; i < dim; ++i) {
+    points.append(F::x + i, x[i]);
+    points.append(F::v + i, body.velocity[i] + turning[i]);
+    for (std::size_t j = 0; j < dim; ++j)
+      points.append(F::L + dim * i + j, i == 0 && j == 1   ? -body.spin
+                                        : i == 1 && j == 0 ? body.spin
+                                                           : 0.0);
+  }
+  for (std::size_t k = 0; k < F::components; ++k) points.append(F::stress + k, at.stress.c[k]);
+  points.append(F::rho, at.density);
+  points.append(F::mass, at.density * volume);
+  for (std::size_t k = 0; k < at.state.size(); ++k) points.append(F::state + k, at.state[k]);
+  if (points.splits_stress()) {
+    points.append(points.force_stress[0], mean(at.stress));
+    points.append(points.force_stress[2], 0.0);
+  }
+  if (points.affine != F::L)
+    for (std::size_t k = 0; k < F::gradient; ++k)
+      points.append(points.affine + k, points[F::L + k][points.id.size()]);
+  points.id.push_back(id);
+  ++points.count;
+}
+
+/// In the box, or in the disc (in space, cylinder) and not in its hole.
+template <int dim>
+bool within_shape(const Body& body, const std::array<double, dim>& x) {
+  if (!body.disc) return true;
+  const double r = std::hypot(x[0] - body.disc->centre[0], x[dim - 1] - body.disc->centre[1]);
+  return r >= body.disc->hole && r < body.disc->radius;
+}
+
+}  // namespace
+
+double overburden(const Material& material, double ocr, double K0, double g, double z, int steps) {
+  const auto weight = [&](double vertical) {
+    return g * material.density_at(vertical * (1.0 + 2.0 * K0) / 3.0, ocr);
+  };
+  const double dz = z / steps;
+  double s = 0.0;
+  for (int k = 0; k < steps; ++k) {
+    const double k1 = weight(s);
+    const double k2 = weight(s + 0.5 * dz * k1);
+    const double k3 = weight(s + 0.5 * dz * k2);
+    const double k4 = weight(s + dz * k3);
+    s += dz / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+  }
+  return s;
+}
+
+template <int dim>
+PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) {
+  using F = Layout<dim>;
+  PointsOf<dim> points;
+  points.material =
+      within("law", [&] { return std::shared_ptr<const Material>(make_material(body.law)); });
+  points.fields = F::state + points.material->law().state.size();
+  if constexpr (dim == 2) {
+    if (scene.viscosity == Viscosity::implicit_solve && !points.material->law().has_stress_memory) {
+      points.force_stress = {points.fields, points.fields, points.fields + 1};
+      points.fields += split_fields;
+    }
+  }
+  if (scene.transfer == Transfer::relaxed) {
+    points.affine = points.fields;
+    points.fields += F::gradient;
+  }
+
+  points.single = scene.storage == Storage::single_precision;
+
+  const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
+  points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
+  std::array<double, dim> spacing;
+  double volume = 1.0;
+  for (std::size_t i = 0; i < dim; ++i) {
+    spacing[i] = body.size[i] / static_cast<double>(lattice[i]);
+    volume *= spacing[i];
+  }
+  const double g = scene.gravity * std::cos(scene.tilt_deg * std::numbers::pi / 180.0);
+  const double K0 = body.initial.K0.value_or(1.0);
+
+  const auto initial = [&](const InitialConditions& given) {
+    return within("initial", [&] { return points.material->initial(given); });
+  };
+  InitialPoint uniform;
+  if (!body.lithostatic) uniform = initial(body.initial);
+  const auto coordinate = [&](std::size_t axis, std::int64_t n) {
+    return body.origin[axis] + (static_cast<double>(n) + 0.5) * spacing[axis];
+  };
+  for (std::int64_t j = 0; j < lattice[1]; ++j) {
+    const double y = coordinate(1, j);
+    InitialPoint at = uniform;
+    if (body.lithostatic) {
+      const double depth = body.origin[1] + body.size[1] - y;
+      InitialConditions here = body.initial;
+      here.p = within("initial", [&] {
+        // steps of a quarter spacing: the error of the fourth-order rule is far below round-off of
+        // σ
+        const int steps = static_cast<int>(std::ceil(depth / (0.25 * spacing[1])));
+        return overburden(*points.material, body.initial.ocr.value_or(1.0), K0, g, depth, steps) *
+               (1.0 + 2.0 * K0) / 3.0;
+      });
+      at = initial(here);
+    }
+    for (std::int64_t k = 0; k < lattice[2]; ++k)
+      for (std::int64_t i = 0; i < lattice[0]; ++i) {
+        std::array<double, dim> x{coordinate(0, i), y};
+        if constexpr (dim == 3) x[2] = coordinate(2, k);
+        if (!within_shape<dim>(body, x)) continue;
+        append<dim>(points, x, body, at, volume,
+                    first_id + static_cast<std::int64_t>(points.count));
+      }
+  }
+  // solid depths are measured at the loosest density the law knows by name, else as filled
+  points.rho_0 = points.count == 0 ? 0.0 : points[F::rho][points.count - 1];
+  for (std::size_t k = 0; k < points.material->law().parameters.size(); ++k)
+    if (points.material->law().parameters[k].name == "rho_0")
+      points.rho_0 = points.material->theta()[k];
+  return points;
+}
+
+template PointsOf<2> fill<2>(const Body&, const Scene&, std::int64_t);
+template PointsOf<3> fill<3>(const Body&, const Scene&, std::int64_t);
+
+}  // namespace repose::mpm

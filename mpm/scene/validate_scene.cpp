@@ -1,0 +1,434 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "mpm/scene/scene.hpp"
+
+namespace repose::mpm {
+namespace {
+
+constexpr double max_points = 1e8;        ///< about 25 GB
+constexpr double max_cells = 1e9;         ///< of the box: half a gigabyte of tables
+constexpr double min_cells = 3;           ///< across the box
+constexpr double min_periodic_cells = 5;  ///< no node is its own image
+constexpr double max_frames = 1e6;
+constexpr double max_rows = 1e7;
+constexpr double max_order = 100;
+
+std::string number(double x, int digits = 10) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, x);
+  return text;
+}
+
+std::string path_of(std::size_t body, const char* key) {
+  return "body[" + std::to_string(body) + "]." + key;
+}
+
+/// The walls with their keys.
+std::vector<std::pair<Wall, const char*>> walls_of(const Scene& scene) {
+  std::vector<std::pair<Wall, const char*>> walls{{scene.floor, "domain.floor"},
+                                                  {scene.left, "domain.left"},
+                                                  {scene.right, "domain.right"},
+                                                  {scene.top, "domain.top"}};
+  if (scene.dimensions() == 3) {
+    walls.emplace_back(scene.near, "domain.near");
+    walls.emplace_back(scene.far, "domain.far");
+  }
+  return walls;
+}
+
+/// The n-th root of x for n cells or points along each axis.
+double per_axis(const Scene& scene, double x) {
+  return scene.dimensions() == 2 ? std::sqrt(x) : std::cbrt(x);
+}
+
+void require(double x, const Range& range, const char* key, const char* what) {
+  if (std::isfinite(x) && range.contains(x)) return;
+  throw InputError(
+      key, std::string(what) + " = " + number(x) + " is out of range: must be " + to_string(range));
+}
+
+void check_periodic(const Scene& scene) {
+  const auto periodic = [](const Wall& wall) { return wall.kind == Wall::Kind::periodic; };
+  for (const auto& [wall, key] :
+       {std::pair{scene.floor, "domain.floor"}, {scene.top, "domain.top"}})
+    if (periodic(wall)) throw InputError(key, "only left and right can be periodic");
+  if (periodic(scene.left) != periodic(scene.right))
+    throw InputError(periodic(scene.left) ? "domain.right" : "domain.left",
+                     "where one of left and right is periodic the other must be so too");
+  const double cells = scene.domain[0] / scene.h;
+  if (periodic(scene.left) && cells < min_periodic_cells - 0.5)
+    throw InputError("grid.h", "a periodic box must be at least " + number(min_periodic_cells) +
+                                   " cells wide, and this has " + number(std::round(cells)) +
+                                   ": h <= " + number(scene.domain[0] / min_periodic_cells) + " m");
+}
+
+void check_numbers(const Scene& scene) {
+  require(scene.end_time, not_negative, "scene.end_time", "end_time");
+  require(scene.gravity, not_negative, "scene.gravity", "gravity");
+  require(scene.tilt_deg, {-90.0, 90.0, false, false}, "scene.tilt_deg", "tilt_deg");
+  for (std::size_t k = 0; k < scene.dimensions(); ++k)
+    require(scene.domain[k], positive, "domain.size", "domain.size");
+  for (const auto& [wall, key] : walls_of(scene)) {
+    if (wall.kind == Wall::Kind::friction) require(wall.friction, not_negative, key, "friction");
+    require(wall.speed, {}, key, "speed");
+    if (wall.speed != 0.0 && wall.kind != Wall::Kind::no_slip)
+      throw InputError(key, "only a no-slip wall can drag the material along: leave out its speed");
+  }
+  require(scene.h, positive, "grid.h", "h");
+  const int edge = scene.points_per_cell > 0 ? points_per_edge(scene) : 0;
+  const bool space = scene.dimensions() == 3;
+  if (scene.points_per_cell > 100 || edge < 1 ||
+      edge * edge * (space ? edge : 1) != scene.points_per_cell)
+    throw InputError(
+        "grid.points_per_cell",
+        "points_per_cell = " + std::to_string(scene.points_per_cell) +
+            (space ? " must be a cube number up to 64 in three dimensions: 1, 8, 27, 64"
+                   : " must be a square number from 1 to 100: 1, 4, 9, 16, ..."));
+  require(scene.sleep_speed, not_negative, "step.sleep_speed", "sleep_speed");
+  require(scene.order, {1.0, max_order, false, false}, "step.order", "order");
+  require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
+  require(scene.viscosity_tolerance, {0.0, 0.1, true, false}, "step.viscosity_tolerance",
+          "viscosity_tolerance");
+  require(scene.courant, courant_range, "step.courant", "courant");
+  if (scene.dt) require(*scene.dt, positive, "step.dt", "dt");
+  require(scene.frame_interval, not_negative, "output.frame_interval", "frame_interval");
+  require(scene.series_interval, not_negative, "output.series_interval", "series_interval");
+  const auto count_limit = [&](double interval, double most, const char* key, const char* what) {
+    if (interval > 0.0 && scene.end_time / interval > most)
+      throw InputError(key, "an interval of " + number(interval) + " s would write " +
+                                number(scene.end_time / interval, 3) + " " + what +
+                                "; it must be >= " + number(scene.end_time / most) + " s");
+  };
+  count_limit(scene.frame_interval, max_frames, "output.frame_interval", "frames");
+  count_limit(scene.series_interval, max_rows, "output.series_interval", "rows");
+}
+
+/// h divides the box's width, and every body holds whole point spacings.
+bool fits(const Scene& scene, double h, bool with_bodies) {
+  if (!is_whole_multiple(scene.domain[0], h)) return false;
+  const double spacing = h / points_per_edge(scene);
+  return !with_bodies || std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) {
+    return is_whole_multiple(b.size[0], spacing) && is_whole_multiple(b.size[1], spacing) &&
+           (scene.dimensions() == 2 || is_whole_multiple(b.size[2], spacing));
+  });
+}
+
+/// The fewest digits of h, up to its double, with which it still fits.
+std::string shortest(const Scene& scene, double h, bool with_bodies) {
+  for (int digits = 1; digits < 17; ++digits) {
+    const std::string text = number(h, digits);
+    if (fits(scene, std::stod(text), with_bodies)) return text;
+  }
+  return number(h, 17);
+}
+
+/// "0.005 or 0.00625": cell sizes within a factor 2 of h that fit, below and above it, short
+/// decimals first; "" if there is none.
+std::string nearby_h(const Scene& scene, bool with_bodies) {
+  std::string below, above;
+  const auto better = [&](const std::string& text, const std::string& than, double h) {
+    if (than.empty()) return true;
+    const bool short_text = text.size() <= 8, short_than = than.size() <= 8;
+    if (short_text != short_than) return short_text;
+    return std::abs(std::stod(text) - h) < std::abs(std::stod(than) - h);
+  };
+  const auto lowest = static_cast<std::int64_t>(std::max(1.0, scene.domain[0] / (2.0 * scene.h)));
+  const auto highest = static_cast<std::int64_t>(std::min(2.0 * scene.domain[0] / scene.h, 1e5));
+  for (std::int64_t n = lowest; n <= highest; ++n) {
+    const double h = scene.domain[0] / static_cast<double>(n);
+    if (!fits(scene, h, with_bodies)) continue;
+    const std::string text = shortest(scene, h, with_bodies);
+    std::string& best = h < scene.h ? below : above;
+    if (better(text, best, scene.h)) best = text;
+  }
+  return below + (below.empty() || above.empty() ? "" : " or ") + above;
+}
+
+/// The lengths next to x that are whole multiples of a unit.
+std::string good_lengths(double x, double unit) {
+  const double n = std::floor(x / unit);
+  const std::string above = number((n + 1.0) * unit);
+  return n < 1.0 ? above : number(n * unit) + " or " + above;
+}
+
+void check_cells(const Scene& scene) {
+  if (!is_whole_multiple(scene.domain[0], scene.h)) {
+    std::string near = nearby_h(scene, true);
+    if (near.empty()) near = nearby_h(scene, false);
+    throw InputError(
+        "grid.h", "h = " + number(scene.h) + " m does not divide the box's width of " +
+                      number(scene.domain[0]) + " m (" + number(scene.domain[0] / scene.h, 6) +
+                      " cells); " +
+                      (near.empty() ? "it must be at most the width" : "h = " + near + " m would"));
+  }
+  if (!is_whole_multiple(scene.domain[1], scene.h))
+    throw InputError("domain.size", "the box's height of " + number(scene.domain[1]) + " m is " +
+                                        number(scene.domain[1] / scene.h, 6) +
+                                        " cells of h = " + number(scene.h) + " m; " +
+                                        good_lengths(scene.domain[1], scene.h) + " m would fit");
+  if (scene.dimensions() == 3 && !is_whole_multiple(scene.domain[2], scene.h))
+    throw InputError("domain.size", "the box's depth of " + number(scene.domain[2]) + " m is " +
+                                        number(scene.domain[2] / scene.h, 6) +
+                                        " cells of h = " + number(scene.h) + " m; " +
+                                        good_lengths(scene.domain[2], scene.h) + " m would fit");
+  // opposite walls must not share a node that both mirror
+  const auto end = scene.domain.begin() + static_cast<std::ptrdiff_t>(scene.dimensions());
+  const double least = *std::min_element(scene.domain.begin(), end) / scene.h;
+  if (least < min_cells - 0.5)
+    throw InputError("grid.h", "the box is " + number(std::round(least)) +
+                                   " cells across; the walls need at least " + number(min_cells) +
+                                   " between them: h <= " + number(least * scene.h / min_cells) +
+                                   " m");
+  double cells = 1.0;
+  for (auto length = scene.domain.begin(); length != end; ++length) cells *= *length / scene.h;
+  if (cells > max_cells)
+    throw InputError(
+        "grid.h",
+        "the box has " + number(cells, 3) + " cells, more than memory is likely to hold (" +
+            number(max_cells) + "); h >= " +
+            number(scene.h * per_axis(scene, cells / max_cells) * 1.0005, 3) + " m would do");
+}
+
+void check_geometry(const Scene& scene) {
+  if (scene.bodies.empty()) throw InputError("body", "a scene needs at least one [[body]]");
+  const double spacing = point_spacing(scene);
+  const char* const axis[3] = {"x", "y", "z"};
+  double points = 0.0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    for (std::size_t k = 0; k < scene.dimensions(); ++k) {
+      if (!std::isfinite(body.origin[k]) || !std::isfinite(body.velocity[k]) ||
+          !std::isfinite(body.spin))
+        throw InputError(path_of(i, "origin"), "origin, velocity and spin must be finite");
+      if (!(body.size[k] > 0.0) || !std::isfinite(body.size[k]))
+        throw InputError(path_of(i, "size"), "size must be > 0 m");
+      const double end = body.origin[k] + body.size[k];
+      const double slack = 1e-9 * scene.domain[k];
+      if (body.origin[k] < -slack || end > scene.domain[k] + slack)
+        throw InputError(path_of(i, body.size[k] > scene.domain[k] + slack ? "size" : "origin"),
+                         "the body reaches from " + std::string(axis[k]) + " = " +
+                             number(body.origin[k]) + " to " + number(end) +
+                             " m, outside the box [0, " + number(scene.domain[k]) + "] m");
+    }
+    double in_body = 1.0;
+    for (std::size_t k = 0; k < scene.dimensions(); ++k) in_body *= body.size[k] / spacing;
+    points += in_body;
+  }
+  if (points > max_points)
+    throw InputError(
+        "grid.h",
+        "h = " + number(scene.h) + " m with " + std::to_string(scene.points_per_cell) +
+            " points per cell makes " + number(points, 3) +
+            " points, more than memory is likely to hold (" + number(max_points) + "); h >= " +
+            number(scene.h * per_axis(scene, points / max_points) * 1.0005, 3) + " m would do");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t k = 0; k < scene.dimensions(); ++k) {
+      const double size = scene.bodies[i].size[k];
+      if (is_whole_multiple(size, spacing)) continue;
+      const std::string near = nearby_h(scene, true);
+      throw InputError(path_of(i, "size"), "the points cannot represent " + number(size) +
+                                               " m along " + axis[k] + " exactly: they stand " +
+                                               number(spacing) + " m apart (h/" +
+                                               std::to_string(points_per_edge(scene)) + "); " +
+                                               good_lengths(size, spacing) + " m would do" +
+                                               (near.empty() ? "" : ", or h = " + near + " m"));
+    }
+}
+
+void check_discs(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (!body.disc) continue;
+    const Disc& disc = *body.disc;
+    if (!(disc.hole >= 0.0 && disc.hole < disc.radius))
+      throw InputError(path_of(i, "hole"),
+                       "hole = " + number(disc.hole) +
+                           " is out of range: must be [0, radius = " + number(disc.radius) + ")");
+    const double thickness = disc.radius - disc.hole;
+    if (thickness < 2.0 * point_spacing(scene))
+      throw InputError(path_of(i, "radius"), "the disc is " + number(thickness) +
+                                                 " m thick, less than two points " +
+                                                 number(point_spacing(scene)) + " m apart");
+    if (body.lithostatic && scene.dimensions() == 2)
+      throw InputError(path_of(i, "initial.lithostatic"),
+                       "a disc has no level surface: only a box can be lithostatic");
+    if (scene.dimensions() == 2) continue;
+    const auto cuts = [&](std::size_t axis, double centre, const Wall& wall, const char* key) {
+      if (body.size[axis] < 2.0 * disc.radius * (1.0 - lattice_tolerance) &&
+          wall.kind != Wall::Kind::slip)
+        throw InputError(key, "the wall cuts body[" + std::to_string(i) + "], whose axis lies at " +
+                                  number(centre) +
+                                  " m: only a slip wall is a plane of symmetry to its other half");
+    };
+    cuts(0, disc.centre[0], scene.left, "domain.left");
+    cuts(2, disc.centre[1], scene.near, "domain.near");
+  }
+}
+
+void check_overlap(const Scene& scene) {
+  const auto name = [&](std::size_t i) {
+    const std::string& given = scene.bodies[i].name;
+    return "body[" + std::to_string(i) + "]" + (given.empty() ? "" : " \"" + given + "\"");
+  };
+  const double slack = lattice_tolerance * scene.h;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Body &a = scene.bodies[i], &b = scene.bodies[j];
+      std::array<double, 3> from{}, to{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        from[k] = std::max(a.origin[k], b.origin[k]);
+        to[k] = std::min(a.origin[k] + a.size[k], b.origin[k] + b.size[k]);
+      }
+      if (to[0] - from[0] <= slack || to[1] - from[1] <= slack ||
+          (scene.dimensions() == 3 && to[2] - from[2] <= slack))
+        continue;
+      throw InputError(path_of(i, "origin"), name(i) + " overlaps " + name(j) + " in x = [" +
+                                                 number(from[0]) + ", " + number(to[0]) +
+                                                 "] m, y = [" + number(from[1]) + ", " +
+                                                 number(to[1]) + "] m");
+    }
+}
+
+/// What an extended velocity adds vanishes at walls at rest and knows no images across an edge.
+void check_extension(const Scene& scene) {
+  if (scene.transfer != Transfer::xpic && scene.transfer != Transfer::fmpm) return;
+  for (const auto& [wall, key] : walls_of(scene))
+    if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
+      throw InputError(key,
+                       "a periodic edge or a wall that moves does not go with step.transfer = "
+                       "\"" +
+                           std::string(name_of(scene.transfer)) +
+                           "\" yet; any other transfer does");
+}
+
+/// An implicit viscosity has something to solve for, among fields that its walls admit, and its
+/// strain rates are those of the points: the affine gradient of the nodes' own velocity.
+void check_viscosity(const Scene& scene) {
+  if (scene.viscosity == Viscosity::explicit_force) return;
+  if (std::all_of(scene.bodies.begin(), scene.bodies.end(),
+                  [](const Body& body) { return find_law(body.law).has_stress_memory; }))
+    throw InputError(
+        "step.viscosity",
+        "viscosity = \"implicit\" needs a body whose law is a viscosity: newtonian, or "
+        "mu_i with form = \"regularised\"");
+  if (scene.transfer == Transfer::tpic || scene.transfer == Transfer::xpic ||
+      scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer",
+                     "transfer = \"" + std::string(name_of(scene.transfer)) +
+                         "\" does not go with step.viscosity = \"implicit\": the strain rates that "
+                         "it solves for are the affine gradients of \"relaxed\", \"apic\", "
+                         "\"aflip\", \"flip\" and \"pic\"");
+  for (const auto& [wall, key] : walls_of(scene))
+    if (wall.kind == Wall::Kind::friction)
+      throw InputError(key,
+                       "a wall with friction does not go with step.viscosity = \"implicit\": its "
+                       "limit on the shear is not part of the solve; \"no_slip\", \"slip\" and "
+                       "\"open\" do");
+    else if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
+      throw InputError(key,
+                       "a periodic edge or a wall that moves does not go with step.viscosity = "
+                       "\"implicit\" yet; \"no_slip\" at rest, \"slip\" and \"open\" do");
+}
+
+/// Its time follows from gravity, and without an end the points would never give way to the grid.
+void check_relaxation(const Scene& scene) {
+  if (scene.transfer == Transfer::relaxed && !scene.relaxation_time && scene.gravity == 0.0)
+    throw InputError("step.transfer",
+                     "without gravity, \"relaxed\" needs step.relaxation_time [s]");
+}
+
+/// A sleeper has nothing to hand on but mass and force, and neighbours only in its own tile.
+void check_sleep(const Scene& scene) {
+  if (scene.sleep_speed == 0.0) return;
+  const auto refuse = [](const std::string& what) {
+    throw InputError("step.sleep_speed", "sleep_speed > 0 does not go with " + what);
+  };
+  if (scene.gravity == 0.0) refuse("scene.gravity = 0: nothing comes to rest");
+  if (scene.viscosity == Viscosity::implicit_solve) refuse("step.viscosity = \"implicit\"");
+  if (scene.pressure_averaging > 0.0) refuse("step.pressure_averaging");
+  if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
+    refuse("step.transfer = \"" + std::string(name_of(scene.transfer)) + "\"");
+  for (const Wall& wall : {scene.floor, scene.left, scene.right, scene.top})
+    if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
+      refuse("periodic edges or walls that move");
+}
+
+/// What plane strain alone has (docs/three_dimensions.md).
+void check_space(const Scene& scene) {
+  if (scene.dimensions() == 2) return;
+  const char* const plane_only = " is for plane strain only: this scene has three dimensions";
+  if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer",
+                     "transfer = \"" + std::string(name_of(scene.transfer)) + "\"" + plane_only +
+                         " (\"relaxed\", \"apic\", \"tpic\", \"aflip\", \"flip\" and \"pic\" go)");
+  if (scene.viscosity == Viscosity::implicit_solve)
+    throw InputError("step.viscosity", std::string("viscosity = \"implicit\"") + plane_only);
+  if (scene.pressure_averaging > 0.0)
+    throw InputError("step.pressure_averaging", std::string("pressure_averaging") + plane_only);
+  for (const auto& [wall, key] : walls_of(scene)) {
+    if (wall.kind == Wall::Kind::periodic)
+      throw InputError(key, std::string("a periodic edge") + plane_only);
+    if (wall.speed != 0.0) throw InputError(key, std::string("a wall that moves") + plane_only);
+  }
+}
+
+/// What the material says to the state at the base of a lithostatic body.
+InitialPoint lithostatic_base(const Scene& scene, const Body& body, const Material& material) {
+  const InitialConditions& given = body.initial;
+  if (given.p || given.v || given.density || given.sigma)
+    throw InputError("lithostatic",
+                     "a lithostatic state follows from the weight: beside it only K0 "
+                     "and ocr can be given");
+  const double g_normal = scene.gravity * std::cos(scene.tilt_deg * std::numbers::pi / 180.0);
+  if (!(g_normal > 1e-12))
+    throw InputError("lithostatic", "a lithostatic state needs gravity towards the floor");
+  InitialConditions base = given;
+  const double vertical =
+      material.density_at(0.0, given.ocr.value_or(1.0)) * g_normal * body.size[1];
+  base.p = vertical * (1.0 + 2.0 * given.K0.value_or(1.0)) / 3.0;
+  return material.initial(base);
+}
+
+void check_law(const Scene& scene, std::size_t i) {
+  const Body& body = scene.bodies[i];
+  std::unique_ptr<Material> material;
+  try {
+    material = make_material(body.law);
+  } catch (const InputError& error) {
+    throw InputError(path_of(i, "law.") + error.key(), error.what());
+  }
+  try {
+    const InitialPoint start = body.lithostatic ? lithostatic_base(scene, body, *material)
+                                                : material->initial(body.initial);
+    if (!(start.density > 0.0) || !std::isfinite(start.density))
+      throw InputError("density",
+                       "the initial density comes out as " + number(start.density) + " kg/m³");
+  } catch (const InputError& error) {
+    const auto table = material->law().parameters;
+    const bool of_law = std::any_of(table.begin(), table.end(),
+                                    [&](const ParamInfo& p) { return p.name == error.key(); });
+    throw InputError(path_of(i, of_law ? "law." : "initial.") + error.key(), error.what());
+  }
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+  check_numbers(scene);
+  check_cells(scene);
+  check_periodic(scene);
+  check_geometry(scene);
+  check_discs(scene);
+  check_overlap(scene);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+  check_space(scene);
+  check_extension(scene);
+  check_viscosity(scene);
+  check_sleep(scene);
+  check_relaxation(scene);
+}
+
+}  // namespace repose::mpm

@@ -1,0 +1,273 @@
+/// G2P: the points of every block take the grid's velocities, move, and update their stress.
+
+#include <fmt/format.h>
+
+#include "mpm/grid/block_loops.hpp"
+#include "mpm/grid/tile_exchange.hpp"
+#include "mpm/step/choose_kernel.hpp"
+#include "mpm/step/pressure_averaging.hpp"
+#include "mpm/step/simulation_impl.hpp"
+#include "mpm/step/step_kinematics.hpp"
+#include "mpm/step/transfer.hpp"
+
+namespace repose::mpm {
+namespace {
+
+/// 1 in the lanes that hold a point, 0 in those that hold padding.
+Pack points_of_pack(std::size_t first, std::size_t count) {
+  alignas(Pack) static constexpr auto one_then_zero = [] {
+    std::array<double, 2 * Pack::size> x{};
+    for (std::size_t k = 0; k < Pack::size; ++k) x[k] = 1.0;
+    return x;
+  }();
+  const std::size_t points = std::min(Pack::size, count - first);
+  return Pack::load_unaligned(one_then_zero.data() + Pack::size - points);
+}
+
+}  // namespace
+
+template <int dim>
+void Simulation::Impl<dim>::grid_to_points(double dt) {
+  block_sums_.assign(grid.point_blocks.size(), BlockSums{});
+  const Retention keep = retention(dt);
+  const Extra carries_next = extra(1);
+  const auto advance = [&]<class Kernel>(Kernel, auto averages, std::size_t k) {
+    BlockSums& sums = block_sums_[k];
+    if constexpr (Kernel::spline_gradient)  // of tpic, which keeps nothing
+      advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
+    else if (keep.gradient > 0.0)
+      advance_block<Kernel, Keeps::velocity_and_gradient, averages.value>(k, dt, keep, sums);
+    else if (keep.velocity > 0.0)
+      advance_block<Kernel, Keeps::velocity, averages.value>(k, dt, keep, sums);
+    else if (dim == 2 && keep.extended && scene.transfer == Transfer::xpic) {
+      if constexpr (dim == 2)
+        advance_block<Kernel, Keeps::extension, averages.value>(k, dt, keep, sums);
+    } else
+      advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
+    // While the points of the block are in the cache: their way to the grid of the next step. If
+    // any of them has left the tile, all blocks are sorted first (sort_if_needed), and this waits.
+    sums.transferred = drift + sums.signals.speed * dt < reach() && sums.failure.empty();
+    if (!sums.transferred) return;
+    transfer_to_tile(k, carries_next);
+  };
+  for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
+    if (grid.point_blocks[k].rest.asleep) {
+      block_sums_[k].transferred = true;
+      block_sums_[k].stirred = is_stirred(k, dt);
+      return;
+    }
+    choose<dim>(scene, keep.affine, averages(),
+                [&](auto kernel, auto, auto averages) { advance(kernel, averages, k); });
+  });
+  tiles_are_current = std::all_of(block_sums_.begin(), block_sums_.end(),
+                                  [](const BlockSums& sums) { return sums.transferred; });
+}
+
+template <int dim>
+template <class Kernel, Keeps keeps, bool averages>
+void Simulation::Impl<dim>::advance_block(std::size_t block, double dt, const Retention& keep,
+                                          BlockSums& sums) {
+  const PointBlockOf<dim>& pb = grid.point_blocks[block];
+  VelocityTileOf<dim> tile;
+  const auto fill = [&](TileField<dim>& field, auto&& of) {
+    fill_tile(pb, field, [&](std::size_t k) { return of(grid.node_blocks[k]).data(); });
+  };
+  using Nodes = NodeBlockOf<dim>;
+  for (std::size_t i = 0; i < dim; ++i) {
+    fill(
+        tile.v[i], [&](const Nodes& nb) -> const auto& { return nb.v[i]; });
+    if constexpr (keeps != Keeps::nothing)
+      fill(
+          tile.u[i], [&](const Nodes& nb) -> const auto& { return nb.u[i]; });
+  }
+  if constexpr (averages)
+    fill(
+        tile.elastic, [](const Nodes& nb) -> const auto& { return nb.extra; });
+
+  static thread_local AlignedVector<double> scratch;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (pb.range[b].count == 0) continue;
+    const std::size_t n = padded(pb.range[b].count);
+    if (scratch.size() < scratch_arrays * n) scratch.resize(scratch_arrays * n);
+    MotionOf<dim> motion;
+    for (std::size_t i = 0; i < dim; ++i) motion.v[i] = scratch.data() + i * n;
+    motion.elastic = scratch.data() + dim * n;
+    bodies[b].update(pb.range[b], [&](PointsOf<dim>& points, const Range& range) {
+      tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, keep, points,
+                                              motion);
+      move(points, range, motion, dt, sums);
+      strain(points, b, range, motion, dt, scratch.data() + (dim + 1) * n, sums);
+    });
+  }
+}
+
+template <int dim>
+void Simulation::Impl<dim>::move(PointsOf<dim>& points, const Range& range,
+                                 const MotionOf<dim>& motion, double dt, BlockSums& sums) const {
+  // a closed wall is never crossed: the interpolated velocity vanishes on it, and what round-off or
+  // an impact faster than one cell per step does is undone here and counted
+  const double hair = 1e-9 * grid.h();
+  const auto keep = [&](double& x, double upper, const Wall& low, const Wall& high, bool counts) {
+    if (low.kind == Wall::Kind::periodic) return;  // wrapped when points are sorted
+    if (x < hair) {
+      if (low.kind == Wall::Kind::open) {
+        sums.outflow = sums.outflow || x < 0.0;
+      } else {
+        if (x < 0.0 && counts) ++sums.corrections;
+        x = hair;
+      }
+    } else if (x > upper - hair) {
+      if (high.kind == Wall::Kind::open) {
+        sums.outflow = sums.outflow || x > upper;
+      } else {
+        if (x > upper && counts) ++sums.corrections;
+        x = upper - hair;
+      }
+    }
+  };
+  std::array<double, dim> end;
+  for (std::size_t i = 0; i < dim; ++i) end[i] = grid.h() * grid.cells()[i];
+  const Pack step(dt), low(hair);
+  for (std::size_t k = 0; k < range.count; k += Pack::size) {
+    const std::size_t s = range.begin + k;
+    auto near_wall = low < low;
+    for (std::size_t i = 0; i < dim; ++i) {
+      double* const x = points.data(Layout<dim>::x + i) + s;
+      const Pack moved = Pack::load_aligned(x) + step * Pack::load_aligned(motion.v[i] + k);
+      moved.store_aligned(x);
+      near_wall = near_wall || moved < low || moved > Pack(end[i] - hair);
+    }
+    if (!any(near_wall)) continue;
+    for (std::size_t lane = 0; lane < Pack::size; ++lane)
+      for (std::size_t i = 0; i < dim; ++i)
+        keep(points.data(Layout<dim>::x + i)[s + lane], end[i], walls.low(i), walls.high(i),
+             k + lane < range.count);
+  }
+}
+
+template <int dim>
+void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, const Range& range,
+                                   const MotionOf<dim>& motion, double dt, double* scratch,
+                                   BlockSums& sums) const {
+  using F = Layout<dim>;
+  const std::size_t n = padded(range.count);
+  double* next = scratch;
+  const auto array = [&] { return std::exchange(next, next + n); };
+  std::array<double*, F::components> e;
+  for (double*& component : e) component = array();
+  std::array<double*, dim == 2 ? 1 : 3> spin;
+  for (double*& component : spin) component = array();
+  double* const work = array();
+  double* const modulus = array();
+  double* const viscosity = array();
+  double* const pressure_before = array();
+  const bool follows_rate = !points.material->law().has_stress_memory;
+  const Pack step(dt), zero(0.0);
+  Pack least_volume(1.0);               // det(I + A)
+  if (n - range.count >= Pack::size) {  // padding that no pack of points reaches is at rest
+    for (double* const component : e) std::fill_n(component + n - Pack::size, Pack::size, 0.0);
+    for (double* const component : spin) std::fill_n(component + n - Pack::size, Pack::size, 0.0);
+  }
+  for (std::size_t k = 0; k < range.count; k += Pack::size) {
+    std::array<Pack, F::gradient> A;
+    for (std::size_t i = 0; i < A.size(); ++i)
+      A[i] = step * Pack::load_aligned(points.data(F::L + i) + range.begin + k);
+    const StepStrain<dim> of_step = step_strain(A, follows_rate);
+    least_volume = min_of(least_volume, of_step.volume);
+    for (std::size_t i = 0; i < e.size(); ++i) of_step.strain[i].store_aligned(e[i] + k);
+    for (std::size_t i = 0; i < spin.size(); ++i) of_step.spin[i].store_aligned(spin[i] + k);
+  }
+  if (any(!(least_volume > zero)) && sums.failure.empty())
+    sums.failure = fmt::format(
+        "a step of {:.3g} s turns a point of {} inside out: det(I + dt grad v) = {:.3g}", dt,
+        body_names[body], least(least_volume));
+  typename PointsOf<dim>::Batch batch = points.batch(range);
+  batch.dt = dt;
+  for (std::size_t i = 0; i < e.size(); ++i) batch.strain[i] = e[i];
+  for (std::size_t i = 0; i < spin.size(); ++i) batch.spin[i] = spin[i];
+  batch.work = work;
+  batch.modulus = modulus;
+  const bool viscous = !points.material->law().has_stress_memory && !points.splits_stress();
+  batch.viscosity = viscous ? viscosity : nullptr;
+  if constexpr (dim == 2) {
+    if (averages())
+      add_averaging_strain(*points.material, batch, scene.pressure_averaging, motion.elastic,
+                           pressure_before, e);
+  }
+  const UpdateReport report = points.material->update(batch);
+  if (!report.ok() && sums.failure.empty()) {
+    const std::size_t k = report.failed;
+    sums.failure = fmt::format(
+        "the stress of {} could not be updated for the strain increment xx {:.6g}, yy {:.6g}, xy "
+        "{:.6g} in {:.3g} s",
+        describe(points, body, range.begin + k), e[0][k], e[1][k], e[3][k], dt);
+  }
+  if constexpr (dim == 2) {
+    if (points.splits_stress()) split_stress(points, range, batch);
+    if (averages()) take_back_averaging_work(batch, motion.elastic, pressure_before);
+  }
+  // A point alone in its stencil has the density m Σw²/h² (Σw² = 0.21 to 0.25, cubic; more,
+  // quadratic; in space 0.097 to 0.125 over h³); looser than that the grid cannot tell, and spray
+  // would dilate without end.
+  const double h = grid.h();
+  const Pack per_cell(dim == 2 ? 0.2 / (h * h) : 0.09 / (h * h * h));
+  for (std::size_t s = range.begin; s < range.begin + range.count; s += Pack::size) {
+    const Pack loosest = per_cell * Pack::load_aligned(points.data(F::mass) + s);
+    const Pack rho = Pack::load_aligned(points.data(F::rho) + s);
+    select(rho < loosest, loosest, rho).store_aligned(points.data(F::rho) + s);
+  }
+  sum_up(points, range, batch, motion, sums);
+}
+
+template <int dim>
+void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const Range& range,
+                                   const typename PointsOf<dim>::Batch& batch,
+                                   const MotionOf<dim>& motion, BlockSums& sums) const {
+  using F = Layout<dim>;
+  const bool follows_rate = !points.material->law().has_stress_memory;
+  const Pack half(0.5), one(1.0), step(batch.dt);
+  std::array<Pack, dim> g;
+  for (std::size_t i = 0; i < dim; ++i) g[i] = Pack(gravity[i]);
+  const Pack viscous_factor(2.0 * dim / (grid.h() * grid.h()));
+  Pack kinetic(0.0), work(0.0), power(0.0);
+  Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
+  for (std::size_t k = 0; k < range.count; k += Pack::size) {
+    const auto at = [&](std::size_t f) {
+      return Pack::load_aligned(points.data(f) + range.begin + k);
+    };
+    const Pack m = at(F::mass) * points_of_pack(k, range.count);
+    const Pack inv_rho = one / at(F::rho);
+    std::array<Pack, dim> v, moving;
+    for (std::size_t i = 0; i < dim; ++i) {
+      v[i] = at(F::v + i);
+      moving[i] = Pack::load_aligned(motion.v[i] + k);
+    }
+    const auto strain_of = [&](std::size_t i) { return Pack::load_aligned(batch.strain[i] + k); };
+    const Pack strain_v = strain_of(0) + strain_of(1) + strain_of(2);
+    kinetic = kinetic + half * m * dot(v, v);
+    // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
+    work = work + m * inv_rho * (one - half * strain_v) * Pack::load_aligned(batch.work + k);
+    std::array<Pack, F::gradient> L;
+    for (std::size_t i = 0; i < L.size(); ++i) L[i] = at(F::L + i);
+    std::array<Pack, F::components> stress;
+    const auto fields = force_components(points);
+    for (std::size_t i = 0; i < stress.size(); ++i) stress[i] = at(fields[i]);
+    power = power + m * (dot(g, moving) - stress_power(L, stress, step, follows_rate) * inv_rho);
+    const Pack v2 = dot(moving, moving);
+    speed2 = max_of(speed2, v2);
+    const Pack c2 = Pack::load_aligned(batch.modulus + k) * inv_rho;
+    signal = max_of(signal, Pack(sqrt(v2) + sqrt(c2)));
+    if (batch.viscosity != nullptr)
+      viscous_rate = max_of(
+          viscous_rate, Pack(viscous_factor * Pack::load_aligned(batch.viscosity + k) * inv_rho));
+  }
+  sums.kinetic += xsimd::hadd(kinetic);
+  sums.work += xsimd::hadd(work);
+  sums.power += xsimd::hadd(power);
+  sums.signals.include({std::sqrt(largest(speed2)), largest(signal), largest(viscous_rate)});
+}
+
+template void Simulation::Impl<2>::grid_to_points(double);
+template void Simulation::Impl<3>::grid_to_points(double);
+
+}  // namespace repose::mpm

@@ -1,0 +1,191 @@
+#include "mpm/step/simulation.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <tbb/info.h>
+
+#include "mpm/scene/fill.hpp"
+#include "mpm/step/simulation_impl.hpp"
+
+namespace repose::mpm {
+namespace {
+
+template <int dim>
+std::array<double, dim> gravity_vector(const Scene& scene) {
+  const double angle = scene.tilt_deg * std::numbers::pi / 180.0;
+  return {scene.gravity * std::sin(angle), -scene.gravity * std::cos(angle)};
+}
+
+/// Velocity, gradient and affine velocity of points that have just been filled.
+void set_motion(PointSet& points, const std::function<PointMotion(double, double)>& motion) {
+  for (std::size_t s = 0; s < points.slots(); ++s) {
+    const PointMotion at = motion(points[X][s], points[Y][s]);
+    points.set(VX, s, at.velocity[0]);
+    points.set(VY, s, at.velocity[1]);
+    for (std::size_t k = 0; k < affine_fields; ++k)
+      for (const std::size_t f : {LXX + k, points.affine + k}) points.set(f, s, at.gradient[k]);
+  }
+}
+
+int cells(double length, double h) { return static_cast<int>(std::llround(length / h)); }
+
+template <int dim>
+std::array<int, dim> cells(const Scene& scene) {
+  std::array<int, dim> n;
+  for (std::size_t i = 0; i < dim; ++i) n[i] = cells(scene.domain[i], scene.h);
+  return n;
+}
+
+}  // namespace
+
+template <int dim>
+Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, int thread_count)
+    : scene(given),
+      gravity(gravity_vector<dim>(given)),
+      walls{given.left, given.right, given.floor, given.top, given.near, given.far},
+      grid(given.h, cells<dim>(given)),
+      arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
+      threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
+      prescribed(by_program) {
+  std::int64_t next_id = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    try {
+      bodies.push_back(fill<dim>(body, scene, next_id));
+    } catch (const InputError& e) {
+      throw InputError(fmt::format("body[{}].{}", b, e.key()), e.what());
+    }
+    next_id += static_cast<std::int64_t>(bodies.back().count);
+    body_names.push_back(body.name.empty() ? fmt::format("body[{}]", b) : body.name);
+    initial_height = std::max(initial_height, body.origin[1] + body.size[1]);
+  }
+  for (PointsOf<dim>& points : bodies)
+    if (prescribed.material) points.material = prescribed.material;
+  if constexpr (dim == 2) {
+    for (PointSet& points : bodies) {
+      if (prescribed.start) set_motion(points, prescribed.start);
+      if (!prescribed.acceleration) continue;
+      for (std::size_t s = 0; s < points.slots(); ++s) {
+        start_x.push_back(points[X][s]);
+        start_y.push_back(points[Y][s]);
+      }
+    }
+  } else if (prescribed.start || prescribed.acceleration) {
+    throw InputError("domain.size", "a prescribed motion is for plane strain only");
+  }
+  sort_if_needed();
+  signals = initial_signals();
+  first_dt = scene.dt ? *scene.dt : stable_step(signals, scene.courant, grid.h());
+  last_dt = first_dt;
+
+  const Energies e = energies();
+  ledger.start = e.kinetic + e.potential + e.elastic;
+  ledger.start_elastic = e.elastic;
+  ledger.kinetic = e.kinetic;
+  ledger.power = initial_power();
+  // all that could ever become motion: every point in the lowest corner of the box, unstressed; and
+  // the round-off of its wave energy where there is nothing else
+  const double lowest = std::min({0.0, -gravity[0] * scene.domain[0], -gravity[1] * scene.domain[1],
+                                  -gravity[0] * scene.domain[0] - gravity[1] * scene.domain[1]});
+  double mass = 0.0;
+  for (const PointsOf<dim>& points : bodies)
+    for (std::size_t s = 0; s < points.slots(); ++s)
+      if (points.id[s] >= 0) mass += points[Layout<dim>::mass][s];
+  highest_energy = ledger.start - mass * lowest + 1e-9 * mass * signals.signal * signals.signal;
+  // the work of these has no bound
+  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
+  if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
+      drags(walls.right) || drags(walls.floor) || drags(walls.top))
+    highest_energy = HUGE_VAL;
+}
+
+template <int dim>
+Signals Simulation::Impl<dim>::initial_signals() const {
+  using F = Layout<dim>;
+  Signals found;
+  std::vector<double> modulus, viscosity, zero;
+  for (const PointsOf<dim>& points : bodies) {
+    // the viscosity at rest comes with an update, which must not count
+    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+      const std::size_t n = padded(range.count);
+      modulus.resize(n);
+      zero.assign(n, 0.0);
+      viscosity.assign(n, 0.0);
+      typename PointsOf<dim>::Batch batch = part.batch(range);
+      part.material->modulus(batch, modulus.data());
+      if (!part.material->law().has_stress_memory && !part.splits_stress()) {
+        batch.dt = 1.0;
+        batch.strain.fill(zero.data());
+        batch.viscosity = viscosity.data();
+        part.material->update(batch);
+      }
+      for (std::size_t k = 0; k < range.count; ++k) {
+        const std::size_t s = first + k;
+        if (points.id[s] < 0) continue;
+        const double speed = std::sqrt(squared_speed(points, s));
+        const double rho = points[F::rho][s];
+        found.include({speed, speed + std::sqrt(modulus[k] / rho),
+                       2.0 * dim * viscosity[k] / (rho * grid.h() * grid.h())});
+      }
+    });
+  }
+  return found;
+}
+
+Simulation::Simulation(const Scene& scene, int threads)
+    : Simulation(scene, Prescribed{}, threads) {}
+Simulation::Simulation(const Scene& scene, const Prescribed& prescribed, int threads) {
+  validate(scene);
+  if (scene.dimensions() == 2)
+    plane_ = std::make_unique<Impl<2>>(scene, prescribed, threads);
+  else
+    space_ = std::make_unique<Impl<3>>(scene, prescribed, threads);
+}
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+
+void Simulation::step(double stop_at) {
+  visit([&](auto& s) { s.step(stop_at); });
+}
+const Scene& Simulation::scene() const { return plane_ ? plane_->scene : space_->scene; }
+double Simulation::time() const {
+  return visit([](const auto& s) { return s.time; });
+}
+std::int64_t Simulation::steps() const {
+  return visit([](const auto& s) { return s.steps; });
+}
+std::int64_t Simulation::point_steps() const {
+  return visit([](const auto& s) { return s.point_steps; });
+}
+SeriesRow Simulation::diagnostics() const {
+  return visit([](auto& s) { return s.diagnostics(); });
+}
+std::int64_t Simulation::point_count() const {
+  return visit([](const auto& s) {
+    std::int64_t n = 0;
+    for (const auto& points : s.bodies) n += static_cast<std::int64_t>(points.count);
+    return n;
+  });
+}
+std::int64_t Simulation::live_cells() const {
+  return visit([](const auto& s) { return s.live_cells(); });
+}
+double Simulation::next_dt() const {
+  return visit([](const auto& s) { return s.choose_step(HUGE_VAL); });
+}
+Simulation::Snapshot Simulation::snapshot() const {
+  return visit([](const auto& s) { return s.snapshot(); });
+}
+std::vector<std::string> Simulation::warnings() const {
+  return visit([](const auto& s) { return s.warnings(); });
+}
+Simulation::Counters Simulation::counters() const {
+  return visit([](const auto& s) { return s.counters(); });
+}
+
+template Simulation::Impl<2>::Impl(const Scene&, const Prescribed&, int);
+template Simulation::Impl<3>::Impl(const Scene&, const Prescribed&, int);
+
+}  // namespace repose::mpm

@@ -1,0 +1,120 @@
+#pragma once
+/// \file
+/// The Material Point Method simulation of one scene, in plane strain or in three dimensions.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "io/frame_writer.hpp"
+#include "mpm/grid/numerical_failure.hpp"
+#include "mpm/scene/prescribed.hpp"
+#include "mpm/scene/scene.hpp"
+
+namespace repose::mpm {
+
+struct Deposit;       // output/deposit.hpp
+struct RestPressure;  // output/rest_pressure.hpp
+
+/// One row of series.csv, in plane strain per metre of depth; in space everything that is named
+/// _per_m is a total in J or kg.
+struct SeriesRow {
+  double time_s, dt_s;
+  std::int64_t step;
+  /// Largest x (of a cylinder: radius about its axis) with solid depth (column mass/ρ_0) >= 0.02
+  /// H_0
+  double front_m;
+  double front_max_m;  ///< largest x (radius) of any point
+  double front_99_m;   ///< x (radius) up to which lies 99 % of the mass in the box
+  double height_m;     ///< solid depth at the left wall, of a cylinder on its axis
+  double kinetic_J_per_m, potential_J_per_m, elastic_J_per_m;
+  double dissipated_J_per_m;       ///< by the material: stress work not stored
+  double transfer_loss_J_per_m;    ///< kinetic energy lost between points and grid (numerical)
+  double wall_loss_J_per_m;        ///< taken by the walls: impact and friction
+  double energy_residual_J_per_m;  ///< what the ledger does not account for (time integration)
+  double mass_kg_per_m;
+  double outflow_kg_per_m;                    ///< mass that has left through open edges
+  double momentum_x, momentum_y, momentum_z;  ///< [kg m/s per m]
+  /// About the origin, of which the plane has z, the affine velocity included [kg m²/s per m]
+  double angular_momentum, angular_momentum_x, angular_momentum_y;
+  double density_min, density_max;  ///< [kg/m³]
+  std::int64_t points_separated;    ///< points that carry no stress
+};
+
+class Simulation {
+ public:
+  /// Fills the bodies with points. `threads` <= 0: all cores. Throws InputError (see validate()).
+  explicit Simulation(const Scene& scene, int threads = 0);
+  /// The same with initial velocities and body accelerations of the program's own; in the plane.
+  Simulation(const Scene& scene, const Prescribed& prescribed, int threads = 0);
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+
+  /// Advances one step, shortened to land exactly on `stop_at` [s]; none if that is not ahead.
+  /// Throws NumericalFailure.
+  void step(double stop_at);
+
+  const Scene& scene() const;
+  double time() const;  ///< [s]
+  std::int64_t steps() const;
+  std::int64_t point_count() const;
+  std::int64_t live_cells() const;   ///< cells that hold a point
+  double next_dt() const;            ///< the step that the next call would take, stops aside [s]
+  std::int64_t point_steps() const;  ///< points advanced so far, summed over steps
+
+  SeriesRow diagnostics() const;
+
+  /// Solid depth over x, or the radius (SeriesRow::front_m): column mass/ρ_0 per cell column.
+  struct Profile {
+    std::vector<double> x_m, depth_m;
+  };
+  Profile profile() const;
+
+  /// Pressure against overburden, for a deposit in the plane at rest (gravity along −y): points
+  /// deeper than 2h below the surface, where the deposit has at least a quarter of its greatest
+  /// depth.
+  RestPressure rest_pressure() const;
+
+  /// All points in a fixed order (their order of creation), for frames and pictures.
+  struct Snapshot {
+    std::vector<double> x_m, y_m, vx, vy, density, pressure_Pa, mises_Pa, sxx, syy, szz, sxy;
+    std::vector<double> shear_rate;         ///< γ̇ = √(2D′:D′) [1/s]
+    std::vector<double> mass;               ///< [kg/m], in space [kg]
+    std::vector<double> z_m, vz, syz, szx;  ///< in space, else empty
+    std::vector<std::int32_t> body;
+    io::FrameView view(double time_s) const;  ///< refers to this snapshot
+    /// In space, the points between two heights z [m].
+    Snapshot slice(double from, double to) const;
+  };
+  Snapshot snapshot() const;
+
+  /// Things a user should know: a fixed step beyond a stability limit, wall corrections, ...
+  std::vector<std::string> warnings() const;
+  /// Figures for summary.json beyond the last row of the series.
+  struct Counters {
+    double dt_min_s, dt_max_s;
+    std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
+    std::int64_t sorts;
+    std::int64_t points_asleep;                     ///< now (Scene::sleep_speed)
+    std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
+    double memory_MB;                               ///< of points and grid
+    int threads;
+  };
+  Counters counters() const;
+
+  /// Whole state to one HDF5 file and back; a resumed run gives the same bits as one never stopped.
+  void save(const std::filesystem::path& file) const;
+  void load(const std::filesystem::path& file);
+
+ private:
+  friend class MidCollapse;  ///< bench/: starts from points that another resolution has moved
+  template <int dim>
+  class Impl;
+  /// f(whichever of the two there is).
+  template <class F>
+  auto visit(F&& f) const;
+  std::unique_ptr<Impl<2>> plane_;
+  std::unique_ptr<Impl<3>> space_;
+};
+
+}  // namespace repose::mpm

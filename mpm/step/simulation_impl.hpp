@@ -1,0 +1,181 @@
+#pragma once
+/// \file
+/// The state of a simulation and the stages of its step, in the plane or in space. Private to mpm/.
+
+#include <tbb/task_arena.h>
+
+#include "mpm/boundary/periodic.hpp"
+#include "mpm/boundary/walls.hpp"
+#include "mpm/grid/grid.hpp"
+#include "mpm/step/implicit_viscosity.hpp"
+#include "mpm/step/ledger.hpp"
+#include "mpm/step/simulation.hpp"
+#include "mpm/step/step_size.hpp"
+#include "mpm/step/transfer.hpp"
+
+namespace repose::mpm {
+
+/// What the tiles' last channel carries.
+enum class Extra : std::uint8_t { nothing, elastic, signal };
+
+template <int dim>
+class Simulation::Impl {
+ public:
+  Impl(const Scene& scene, const Prescribed& prescribed, int threads);
+
+  void step(double stop_at);
+
+  // --- the algorithm box, one function per stage ---
+  void sort_if_needed();
+  double choose_step(double stop_at) const;
+  void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
+  void update_grid(double dt);      ///< sum tiles, accelerate nodes
+  void measure_signals();           ///< now and then: what the grid sees of them (step_size.hpp)
+  void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
+  void extend_velocity();           ///< XPIC, FMPM beyond first order (extended_pic.cpp)
+  void grid_to_points(double dt);   ///< G2P, move, update stress, P2G of the next step
+  void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
+  void mark_sleepers();             ///< tells the blocks of nodes which points around them sleep
+  void settle();                    ///< blocks at rest fall asleep, stirred ones wake (sleep.hpp)
+
+  SeriesRow diagnostics();
+  Deposit deposit() const;
+  std::int64_t live_cells() const;
+  Snapshot snapshot() const;
+  std::vector<std::string> warnings() const;
+  Counters counters() const;
+  void save(const std::filesystem::path& file) const;
+  void load(const std::filesystem::path& file);
+  /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.
+  struct Energies {
+    double kinetic = 0.0, potential = 0.0, elastic = 0.0;
+  };
+  Energies energies();
+  Signals initial_signals() const;
+  /// The signals as the grid sees them.
+  Signals seen() const {
+    return {signals.speed, node_share * signals.signal, signals.viscous_rate};
+  }
+
+  Scene scene;
+  std::array<double, dim> gravity{};
+  Walls walls;
+  std::vector<PointsOf<dim>> bodies;
+  std::vector<std::string> body_names;
+  GridOf<dim> grid;
+  mutable tbb::task_arena arena;
+  int threads;
+
+  Prescribed prescribed;
+  std::vector<double> start_x, start_y;  ///< by point id, if an acceleration is prescribed [m]
+
+  double time = 0.0;
+  std::int64_t steps = 0;
+  std::int64_t point_steps = 0;
+  double last_dt = 0.0;
+  double dt_min = HUGE_VAL, dt_max = 0.0;
+  double drift = 0.0;  ///< bound on the way any point has gone since the last sort [m]
+  bool must_sort = true;
+  bool tiles_are_current = false;  ///< the tiles hold the points as they are
+  double tiles_time = 0.0;         ///< the moment whose forces they hold [s]
+  std::int64_t sorts = 0;
+  std::int64_t wall_corrections = 0;
+  std::int64_t newton_iterations = 0, cg_iterations = 0;  ///< of the implicit viscosity
+  double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
+  double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
+  double first_dt = 0.0;
+  Signals signals;          ///< of the points awake
+  double node_share = 1.0;  ///< largest signal of a node over that of a point (step_size.hpp)
+  Ledger ledger;
+  double highest_energy = 0.0;  ///< what kinetic energy can never exceed [J/m]
+  double initial_height = 0.0;  ///< H_0: top of the highest body [m]
+
+ private:
+  struct BlockSums {
+    double kinetic = 0.0;
+    double work = 0.0;
+    double power = 0.0;
+    Signals signals;
+    std::int64_t corrections = 0;
+    bool outflow = false;
+    bool transferred = false;  ///< its tile holds the points as they are
+    bool stirred = false;      ///< asleep, and something happens at its border
+    std::string failure;
+  };
+  template <class Kernel, bool affine, Extra extra>
+  void transfer_to_tile(std::size_t block);
+  void transfer_to_tile(std::size_t block, Extra extra);
+  static void square_signals(PointsOf<dim>& points, const Range& range, double* signal2);
+  template <class Kernel>
+  void prescribed_force_to_tile(const PointSet& points, const Range& range,
+                                std::array<int, 2> origin, Tile& tile) const;
+  template <class Kernel, Keeps keeps, bool averages>
+  void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
+  void move(PointsOf<dim>& points, const Range& range, const MotionOf<dim>& motion, double dt,
+            BlockSums& sums) const;
+  /// Arrays of a range's length: velocity and mean elastic strain (Motion), and in strain() a
+  /// strain, a spin, work, modulus, viscosity and pressure.
+  static constexpr std::size_t scratch_arrays =
+      dim + 1 + Layout<dim>::components + (dim == 2 ? 1 : 3) + 4;
+  /// Brings a range's stress to the end of the step.
+  void strain(PointsOf<dim>& points, std::size_t body, const Range& range,
+              const MotionOf<dim>& motion, double dt, double* scratch, BlockSums& sums) const;
+  /// Adds a range's energies, work, power and signals after its update.
+  void sum_up(const PointsOf<dim>& points, const Range& range,
+              const typename PointsOf<dim>::Batch& batch, const MotionOf<dim>& motion,
+              BlockSums& sums) const;
+  /// The fields of the stress that gives the explicit forces, as in Sym.
+  static std::array<std::size_t, Layout<dim>::components> force_components(
+      const PointsOf<dim>& points) {
+    const auto& s = points.force_stress;
+    if constexpr (dim == 2)  // of an isotropic split stress, zz is what xx is
+      return {s[0], s[1], points.splits_stress() ? s[0] : std::size_t{SZZ}, s[2]};
+    else
+      return s;
+  }
+  /// How far a point may be from the cell it was sorted into [m].
+  double reach() const { return 0.98 * grid.h(); }
+  bool averages() const { return dim == 2 && scene.pressure_averaging > 0.0; }
+  /// Whether this step, or the n-th after it, measures node_share.
+  bool measures(int n = 0) const { return !averages() && (steps + n) % 16 == 0; }
+  Extra extra(int n) const {
+    return averages() ? Extra::elastic : measures(n) ? Extra::signal : Extra::nothing;
+  }
+  /// What the scene's transfer keeps over a step.
+  Retention retention(double dt) const;
+  /// Whether blocks at rest fall asleep, and after how long [s].
+  bool sleeps() const;
+  double time_to_sleep() const;
+  void put_to_sleep(std::size_t block);
+  void wake(PointBlockOf<dim>& block);
+  void wake_the_crowded();  ///< sleepers into which points have come
+  void sum_awake_mass(NodeBlockOf<dim>& nb) const;
+  bool is_stirred(std::size_t block, double dt);
+  void remove_outflow();
+  double initial_power() const;
+  /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].
+  double power_of(const PointsOf<dim>& points, std::size_t slot, double dt) const;
+  std::string describe(const PointsOf<dim>& points, std::size_t body, std::size_t slot) const;
+
+  std::vector<BlockSums> block_sums_;
+  std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
+  WallEffect wall_effect_;
+  std::vector<MirroredTriple> mirrored_;  ///< what the walls did, for the extension
+  /// Of the extension: its remainder r, A r, and what it has added up.
+  NodeVector remainder_, through_points_, extension_;
+  ImplicitViscosity viscosity_;
+  ViscousEffect viscous_effect_;
+};
+
+// of the plane alone
+template <>
+void Simulation::Impl<2>::solve_viscosity(double dt);
+template <>
+void Simulation::Impl<2>::extend_velocity();
+
+template <class F>
+auto Simulation::visit(F&& f) const {
+  return plane_ ? f(*plane_) : f(*space_);
+}
+
+}  // namespace repose::mpm

@@ -1,0 +1,92 @@
+#include "mpm/study/estimate.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "mpm/step/simulation_impl.hpp"
+
+namespace repose::mpm {
+namespace {
+
+/// Wave speed of a law at rest under pressure p; 0 if it has no rest state there [m/s].
+double wave_speed_under(const Material& material, double p) {
+  InitialConditions given;
+  given.p = p;
+  given.ocr = 1.0;
+  if (std::none_of(material.law().state.begin(), material.law().state.end(),
+                   [](const StateField& f) { return f.name == "p_c"; }))
+    given.ocr.reset();
+  given.density.reset();
+  try {
+    const InitialPoint at = material.initial(given);
+    PointSet one;
+    for (std::size_t f = 0; f < one.field.size(); ++f) one.field[f].assign(pack_size, 1.0);
+    for (int k = 0; k < 4; ++k)
+      one.field[SXX + static_cast<std::size_t>(k)].assign(pack_size, at.stress[k]);
+    one.field[RHO].assign(pack_size, at.density);
+    for (std::size_t k = 0; k < at.state.size(); ++k)
+      one.field[STATE + k].assign(pack_size, at.state[k]);
+    one.fields = STATE + at.state.size();
+    std::array<double, pack_size> modulus{};
+    material.modulus(one.batch({0, 1}), modulus.data());
+    return std::sqrt(modulus[0] / at.density);
+  } catch (const InputError&) {
+    return 0.0;  // for instance Cam-Clay whose line is not known: the step is then that of the
+                 // start
+  }
+}
+
+}  // namespace
+
+Estimate estimate(const Scene& scene, int threads) {
+  Estimate e;
+  Simulation simulation(scene, threads);
+  e.points = simulation.point_count();
+  e.live_cells = simulation.live_cells();
+  e.first_dt_s = simulation.next_dt();
+
+  // Fastest signal on the way: free fall through the height of the scene, and the stiffness under
+  // twice the weight of the highest body (what an impact from rest brings).
+  double top = 0.0;
+  double signal = 0.0;
+  for (const Body& body : scene.bodies) top = std::max(top, body.origin[1] + body.size[1]);
+  for (const Body& body : scene.bodies) {
+    const auto material = make_material(body.law);
+    const double weight = simulation.diagnostics().density_max * scene.gravity * body.size[1];
+    signal = std::max(signal, wave_speed_under(*material, 2.0 * weight) +
+                                  std::hypot(body.velocity[0], body.velocity[1]));
+  }
+  signal += std::sqrt(2.0 * scene.gravity * top);
+  const double wave_step = scene.courant * scene.h / signal;
+  const double typical = scene.dt ? *scene.dt : std::min(e.first_dt_s, wave_step);
+  e.steps = scene.end_time / typical;
+
+  // a few real steps, for at most half a second
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const double horizon = 1e3 * e.first_dt_s;
+  int steps = 0;
+  try {
+    while (steps < 20 && elapsed() < 0.5) {
+      simulation.step(horizon);
+      ++steps;
+    }
+  } catch (const NumericalFailure& failure) {
+    e.warnings.push_back(fmt::format("the first steps fail: {}", failure.what()));
+  }
+  if (steps > 0) e.seconds = elapsed() / steps * e.steps;
+  e.memory_MB = simulation.counters().memory_MB;
+  for (const std::string& warning : simulation.warnings()) e.warnings.push_back(warning);
+  if (!scene.dt && e.steps > 1e7)
+    e.warnings.push_back(fmt::format(
+        "the stable step of {:.3g} s means {:.3g} steps: a regularised viscosity limits it "
+        "(step.viscosity = \"implicit\" and form = \"elastoviscoplastic\" have no such limit)",
+        typical, e.steps));
+  return e;
+}
+
+}  // namespace repose::mpm

@@ -1,0 +1,83 @@
+#include "pointdriver/integrate/simulate.hpp"
+
+#include "pointdriver/integrate/start.hpp"
+
+namespace repose::point {
+
+Outcome simulate(const LawInfo& law, std::span<const double> theta, const PointTest& test,
+                 Curve& curve) {
+  return visit_law(law, [&]<class L>(L) -> Outcome {
+    try {
+      const ElementStart<L, double> start = plain_start<L>(theta, test);
+      if (suits(test.path, start.stress_and_state))
+        return drive_path<L, double>(start, test.path, test.settings, curve);
+    } catch (const InputError&) {
+    }
+    curve.rows.clear();
+    curve.outcome = {};
+    curve.outcome.status = Status::bad_initial;
+    return curve.outcome;
+  });
+}
+
+void read_column(const LawInfo& law, std::span<const double> theta, const PointTest& test,
+                 const Curve& curve, Quantity quantity, std::vector<double>& values) {
+  Readout<double> readout;
+  readout.frame = test.path.frame;
+  if (const int i = parameter_index(law.parameters, "rho_p"); i >= 0)
+    readout.rho_p = theta[static_cast<std::size_t>(i)];
+  if (const int i = parameter_index(law.parameters, "d"); i >= 0)
+    readout.d = theta[static_cast<std::size_t>(i)];
+  readout.p_c_index = state_index(law.state, "p_c");
+  values.clear();
+  values.reserve(curve.rows.size());
+  if (curve.rows.empty()) return;
+  set_pore_pressure_datum(curve.rows, test.path.first_undrained, readout);
+  for (const Row<double>& row : curve.rows) values.push_back(read(quantity, row, readout));
+}
+
+std::vector<Quantity> columns_of(const LawInfo& law, const PointTest& test) {
+  using Q = Quantity;
+  std::vector<Q> columns{Q::time, Q::eps_a, Q::eps_r, Q::eps_v, Q::eps_q};
+  const bool shear = test.path.frame != Frame::axisymmetric;
+  if (shear) columns.push_back(Q::gamma);
+  for (const Q q : {Q::p, Q::q, Q::sigma_a, Q::sigma_r}) columns.push_back(q);
+  if (shear) columns.push_back(Q::tau);
+  if (test.path.undrained) columns.push_back(Q::u);
+  if (parameter_index(law.parameters, "rho_p") >= 0) columns.push_back(Q::v);
+  if (state_index(law.state, "p_c") >= 0) columns.push_back(Q::p_c);
+  if (shear) {
+    if (parameter_index(law.parameters, "d") >= 0) columns.push_back(Q::I);
+    columns.push_back(Q::mu);
+  }
+  return columns;
+}
+
+Method method_for(const LawInfo& law, Method method) {
+  return visit_law(law, [&]<class L>(L) { return chosen_method<L>(method); });
+}
+
+std::string_view name_of(Method method) {
+  constexpr std::array<std::string_view, 6> names{"automatic", "adaptive", "implicit",
+                                                  "cvode",     "ida",      "arkode"};
+  return names[static_cast<std::size_t>(method)];
+}
+
+std::optional<Method> find_method(std::string_view name) {
+  for (const Method m : {Method::automatic, Method::adaptive, Method::implicit, Method::cvode,
+                         Method::ida, Method::arkode})
+    if (name_of(m) == name) return m;
+  return std::nullopt;
+}
+
+void check_start(const LawInfo& law, std::span<const double> theta, const PointTest& test) {
+  visit_law(law, [&]<class L>(L) {
+    const ElementStart<L, double> start = plain_start<L>(theta, test);
+    if (!suits(test.path, start.stress_and_state))
+      throw InputError(test.initial.sigma ? "sigma" : "initial",
+                       "this test needs an initial stress with equal radial stresses (xx = zz) and "
+                       "no shear components");
+  });
+}
+
+}  // namespace repose::point

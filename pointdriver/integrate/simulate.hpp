@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// The point driver's front door: a law's parameters and a test in, a curve out.
+///
+///     const auto& law = find_law(spec);
+///     point::PointTest test{point::path_of({stage}), {.p = 100e3, .ocr = 1.0}};
+///     point::Curve curve;
+///     point::simulate(law, theta, test, curve);        // reuse the curve: no further allocation
+///     for (const auto& row : curve.rows) …
+///     std::vector<double> q = point::column(law, theta, test, curve, point::Quantity::q);
+
+#include "models/material.hpp"
+#include "pointdriver/path/laboratory.hpp"
+#include "pointdriver/path/path.hpp"
+#include "pointdriver/path/settings.hpp"
+
+namespace repose::point {
+
+struct PointTest {
+  Path path;
+  InitialConditions initial;
+  Settings settings;
+};
+
+/// Drives the law of `law` (an entry of all_laws()) with parameters `theta` along the test. Absent
+/// optional parameters may be NaN. Ranges of single parameters are not checked here. Never throws
+/// and never loops without bound: see Outcome; explain() puts it in words. Allocates nothing but
+/// what the curve's memory and the law's initial state need.
+Outcome simulate(const LawInfo& law, std::span<const double> theta, const PointTest& test,
+                 Curve& curve);
+
+/// Reads one quantity off every row. NaN where the law or test has none.
+void read_column(const LawInfo& law, std::span<const double> theta, const PointTest& test,
+                 const Curve& curve, Quantity quantity, std::vector<double>& values);
+
+/// The columns of curve.csv that apply to this law and test, in the interface's order.
+std::vector<Quantity> columns_of(const LawInfo& law, const PointTest& test);
+
+/// The outcome in words: what happened, where, and how much of the path is done.
+std::string explain(const LawInfo& law, std::span<const double> theta, const PointTest& test,
+                    const Curve& curve);
+
+/// The method that runs if the test says `automatic` (or `adaptive`, for a law without stress
+/// memory).
+Method method_for(const LawInfo& law, Method method);
+std::string_view name_of(Method method);
+std::optional<Method> find_method(std::string_view name);
+
+/// Checks the test's start against the law. Throws InputError, also if the initial stress does not
+/// suit the path (a triaxial test needs equal radial stresses and no shear).
+void check_start(const LawInfo& law, std::span<const double> theta, const PointTest& test);
+
+}  // namespace repose::point

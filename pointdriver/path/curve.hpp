@@ -1,0 +1,167 @@
+#pragma once
+/// \file
+/// A curve: the element's state row by row, and the laboratory quantities read from it.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "models/law.hpp"
+#include "pointdriver/path/status.hpp"
+
+namespace repose::point {
+
+inline constexpr std::size_t max_state = 4;  ///< state variables of a law
+
+/// The element at one instant. Tensors tension positive; strains logarithmic, zero at the start.
+template <class T>
+struct Row {
+  T time{0.0};              ///< [s]
+  Sym<T, 6> strain{};       ///< [-]
+  Sym<T, 6> stress{};       ///< [Pa]
+  Sym<T, 6> strain_rate{};  ///< [1/s]; only where the test asks for it
+  std::array<T, max_state> state{};
+  T density{0.0};         ///< [kg/m³]
+  T work{0.0};            ///< ∫ J σ:D dt, per initial volume [J/m³]
+  T stored{0.0};          ///< recoverable energy since the start, per initial volume [J/m³]
+  T dissipated{0.0};      ///< ∫ J σ:D^p dt, per initial volume [J/m³]
+  double residual = 0.0;  ///< relative violation of the prescription (Control::residual) [-]
+  int leg = 0;
+};
+
+template <class T>
+struct BasicCurve {
+  std::vector<Row<T>> rows;
+  Outcome outcome;
+};
+using Curve = BasicCurve<double>;
+
+/// Which strains and stresses the laboratory calls axial, radial, shear.
+enum class Frame : std::uint8_t {
+  axisymmetric,  ///< axis y: ε_a = ε_yy, ε_r = mean of xx and zz, q = σ_a − σ_r (signed)
+  shear,         ///< shear in xy: γ = 2ε_xy, τ = σ_xy, q ≥ 0
+  general,       ///< q = √(3/2 s:s), ε_q = √(2/3 e:e)
+};
+
+/// Columns of curve.csv. Compression positive; units as in the names.
+enum class Quantity : std::uint8_t {
+  time,
+  eps_a,
+  eps_r,
+  eps_v,
+  eps_q,
+  gamma,
+  p,
+  q,
+  eta,
+  sigma_a,
+  sigma_r,
+  tau,
+  u,
+  v,
+  p_c,
+  I,
+  mu,
+  density,
+  shear_rate,
+};
+inline constexpr std::size_t quantity_count = 19;
+
+/// "eps_a", "p_Pa", ...: the column's name in curve.csv.
+std::string_view column_name(Quantity quantity);
+/// The quantity of a column name; a missing unit suffix is accepted ("q" for "q_Pa").
+std::optional<Quantity> find_quantity(std::string_view column);
+
+/// What is needed, besides the row, to read quantities: constants of the law and of the start.
+template <class T>
+struct Readout {
+  Frame frame = Frame::general;
+  T rho_p{std::numeric_limits<double>::quiet_NaN()};  ///< grain density, NaN if the law has none
+  T d{std::numeric_limits<double>::quiet_NaN()};      ///< grain size, NaN if the law has none
+  int p_c_index = -1;                                 ///< state variable "p_c", -1 if none
+  T sigma_r_start{0.0};                               ///< radial stress where u is 0 [Pa]
+  int first_undrained = 0;                            ///< before this leg u is 0
+};
+
+/// Value of a quantity in a row; NaN where the law or the test has no such quantity.
+template <class T>
+T read(Quantity quantity, const Row<T>& row, const Readout<T>& readout) {
+  using std::abs;
+  using std::sqrt;
+  const Sym<T, 6>& e = row.strain;
+  const Sym<T, 6>& s = row.stress;
+  const T nan(std::numeric_limits<double>::quiet_NaN());
+  switch (quantity) {
+    case Quantity::time:
+      return row.time;
+    case Quantity::eps_a:
+      return -e[1];
+    case Quantity::eps_r:
+      return T(-0.5) * (e[0] + e[2]);
+    case Quantity::eps_v:
+      return -trace(e);
+    case Quantity::eps_q:
+      if (readout.frame == Frame::axisymmetric)
+        return T(2.0 / 3.0) * (T(0.5) * (e[0] + e[2]) - e[1]);
+      return T(2.0 / std::sqrt(3.0)) * shear_norm(deviator(e));  // √(2/3 e:e)
+    case Quantity::gamma:
+      return T(2.0) * e[3];
+    case Quantity::p:
+      return pressure(s);
+    case Quantity::q:
+      if (readout.frame == Frame::axisymmetric) return T(0.5) * (s[0] + s[2]) - s[1];
+      return mises(s);
+    case Quantity::eta:
+      return read(Quantity::q, row, readout) / pressure(s);
+    case Quantity::sigma_a:
+      return -s[1];
+    case Quantity::sigma_r:
+      return T(-0.5) * (s[0] + s[2]);
+    case Quantity::tau:
+      return s[3];
+    case Quantity::u:
+      if (row.leg < readout.first_undrained) return T(0.0);
+      // the total radial stress is constant, so what the skeleton loses the water takes
+      return readout.sigma_r_start + T(0.5) * (s[0] + s[2]);
+    case Quantity::v:
+      return readout.rho_p / row.density;
+    case Quantity::p_c:
+      return readout.p_c_index < 0 ? nan : row.state[static_cast<std::size_t>(readout.p_c_index)];
+    case Quantity::density:
+      return row.density;
+    case Quantity::shear_rate:
+      return T(2.0) * shear_norm(deviator(row.strain_rate));  // γ̇ = √(2D′:D′)
+    case Quantity::I: {
+      const T p = pressure(s);
+      if (!(value(p) > 0.0)) return nan;
+      return read(Quantity::shear_rate, row, readout) * readout.d *
+             sqrt(readout.rho_p / p);  // MUI-2
+    }
+    case Quantity::mu: {
+      const T p = pressure(s);
+      if (!(value(p) > 0.0)) return nan;
+      return shear_norm(deviator(s)) / p;
+    }
+  }
+  return nan;
+}
+
+/// Sets where the excess pore pressure starts: the last row before the first undrained leg.
+template <class T>
+void set_pore_pressure_datum(const std::vector<Row<T>>& rows, int first_undrained,
+                             Readout<T>& readout) {
+  readout.first_undrained = first_undrained;
+  const Row<T>* datum = rows.empty() ? nullptr : &rows.front();
+  for (const Row<T>& row : rows)
+    if (row.leg < first_undrained) datum = &row;
+  if (datum != nullptr) readout.sigma_r_start = T(-0.5) * (datum->stress[0] + datum->stress[2]);
+}
+
+/// Index of a parameter or state variable in a law's tables, -1 if it has none of that name.
+int parameter_index(std::span<const ParamInfo> table, std::string_view name);
+int state_index(std::span<const StateField> table, std::string_view name);
+
+}  // namespace repose::point

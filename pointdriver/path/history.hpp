@@ -1,0 +1,45 @@
+#pragma once
+/// \file
+/// Prescribed histories from a table: measured strains or stresses over time become a path.
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "pointdriver/path/path.hpp"
+
+namespace repose::point {
+
+/// A table that cannot be used: "file.csv:12: …".
+class TableError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A CSV table of numbers: lines starting with # are comments, the first other line names the
+/// columns, values are separated by commas.
+struct Table {
+  std::string name;  ///< for messages
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> values;  ///< by column
+  std::vector<int> lines;                   ///< line of each row in the file
+};
+
+/// Reads a table. Throws TableError with the line for a row of the wrong length, a value that is no
+/// finite number (nan, inf, text), a repeated column name, no rows, or more than 10⁶ rows;
+/// std::system_error if the file cannot be read.
+Table read_table(const std::filesystem::path& file);
+Table parse_table(std::string_view text, std::string name);
+
+/// The path along a table: between two rows every prescribed quantity changes linearly in time, one
+/// row of output at each. Columns: time_s (increasing) and what is prescribed,
+///     eps_xx … eps_zx [-]  or  eps_xx_percent,    sigma_xx_Pa … or sigma_xx_kPa,
+///     eps_a (= eps_yy), eps_r (= eps_xx and eps_zz), eps_v, gamma (= 2 eps_xy),
+///     sigma_a_*, sigma_r_* (mean of xx and zz, with equal radial strains), tau_* (= sigma_xy);
+/// compression positive, changes count, not absolute values. Shear components that are not named
+/// stay unstrained; together six independent rows are needed.
+/// Throws TableError (a unit that is not known, a column that is missing, times that do not grow).
+Path history_path(const Table& table);
+
+}  // namespace repose::point

@@ -1,0 +1,44 @@
+#include "pointdriver/path/path.hpp"
+
+#include "models/parameter.hpp"
+
+namespace repose::point {
+namespace {
+
+void require_positive(double x, const char* key, const char* what) {
+  if (!(x > 0.0) || !std::isfinite(x))
+    throw InputError(key, std::string(key) + " must be > 0 " + what);
+}
+
+Control prepared(const LegSpec& spec, double sign) {
+  std::array<Constraint, 6> rows = spec.rows;
+  if (spec.driver >= 0) rows[static_cast<std::size_t>(spec.driver)].rate *= sign;
+  return Control(rows);
+}
+
+}  // namespace
+
+Leg::Leg(LegSpec spec) : spec_(std::move(spec)) {
+  if (spec_.points < 1) throw InputError("points", "points must be >= 1 row");
+  if (spec_.goal) {
+    if (!std::isfinite(spec_.goal->value))
+      throw InputError(std::string(column_name(spec_.goal->quantity)),
+                       "the value a leg is to reach must be finite");
+    if (spec_.driver < 0) throw InputError("stages", "a leg with a goal needs a driven component");
+    require_positive(spec_.rows[static_cast<std::size_t>(spec_.driver)].rate, "rate", "1/s (Pa/s)");
+    require_positive(spec_.goal_rate, "rate", "1/s (Pa/s)");
+    if (spec_.goal_is_event) require_positive(spec_.strain_limit, "strain_limit", "[-]");
+  } else {
+    require_positive(spec_.duration, "duration", "s");
+  }
+  control_[0] = prepared(spec_, 1.0);
+  control_[1] = prepared(spec_, -1.0);
+}
+
+std::size_t Path::row_count() const {
+  std::size_t n = 2;  // the start and, should it fail, where
+  for (const Leg& leg : legs) n += static_cast<std::size_t>(leg.spec().points);
+  return n;
+}
+
+}  // namespace repose::point

@@ -1,0 +1,63 @@
+#pragma once
+/// \file
+/// A loading path: legs in a row, each one set of constraints with an end. Named laboratory tests
+/// (laboratory.hpp) build paths; the integrators know nothing else.
+
+#include <string>
+#include <vector>
+
+#include "pointdriver/path/control.hpp"
+#include "pointdriver/path/curve.hpp"
+
+namespace repose::point {
+
+/// A quantity reaching a value, from either side.
+struct Goal {
+  Quantity quantity = Quantity::time;
+  double value = 0.0;
+};
+
+/// One leg. It ends after `duration`, or when the goal is reached:
+/// - with a goal that the driver row leads to at a known rate (ε_a under a prescribed axial rate, p
+///   under a prescribed mean stress rate), the duration follows from the state at its start;
+/// - with `goal_is_event`, the goal is located along the way and `strain_limit` bounds the leg.
+/// The driver row's rate is given positive; its sign is chosen so as to approach the goal.
+struct LegSpec {
+  std::array<Constraint, 6> rows{};
+  int driver = -1;  ///< row whose sign is chosen; −1: the rows are meant as they are
+  std::optional<Goal> goal;
+  bool goal_is_event = false;
+  double goal_rate = 1.0;     ///< |d goal/dt| while driven (goal not an event) [unit/s]
+  double strain_limit = 1.0;  ///< of the driver, for a goal located as an event [-]
+  double duration = 0.0;      ///< without goal [s]
+  int points = 1;             ///< rows of output, evenly spaced in time
+  std::vector<Goal> stops;    ///< conditions that end the whole test
+  std::string name;           ///< for messages: "drained extension"
+};
+
+/// A leg with its control prepared for both signs of the driver.
+class Leg {
+ public:
+  /// Errors: InputError (Control; rates, durations and counts that are not positive).
+  explicit Leg(LegSpec spec);
+  const LegSpec& spec() const { return spec_; }
+  const Control& control(bool forward) const { return control_[forward ? 0 : 1]; }
+
+ private:
+  LegSpec spec_;
+  std::array<Control, 2> control_;
+};
+
+struct Path {
+  std::vector<Leg> legs;
+  Frame frame = Frame::general;
+  bool undrained = false;          ///< report u
+  int first_undrained = 0;         ///< the leg at whose start the excess pore pressure is 0
+  bool wants_strain_rate = false;  ///< rows carry D (for γ̇ and I)
+  bool needs_axisymmetry = false;  ///< the initial stress must have σ_xx = σ_zz and no shear
+  bool needs_isotropy = false;     ///< the initial stress must be isotropic
+  /// Upper bound of the number of rows that a completed path writes.
+  std::size_t row_count() const;
+};
+
+}  // namespace repose::point

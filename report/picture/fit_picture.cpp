@@ -1,0 +1,166 @@
+#include "report/picture/fit_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+#include <fmt/format.h>
+
+namespace repose::report {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::vector<double> scaled(const VectorXd& v, double factor) {
+  std::vector<double> out(v.begin(), v.end());
+  for (double& x : out) x *= factor;
+  return out;
+}
+
+/// A column's name in a picture and the factor from SI: "q_Pa" → ("q (kPa)", 1e-3).
+std::pair<std::string, double> label(const std::string& column) {
+  if (column.ends_with("_Pa"))
+    return {fmt::format("{} (kPa)", column.substr(0, column.size() - 3)), 1e-3};
+  if (column.starts_with("eps_")) return {fmt::format("eps_{{{}}} (%)", column.substr(4)), 100.0};
+  if (column == "gamma") return {"gamma (%)", 100.0};
+  if (const auto unit = column.rfind('_'); unit != std::string::npos && column != "rho_0")
+    return {fmt::format("{} ({})", column.substr(0, unit), column.substr(unit + 1)), 1.0};
+  return {column, 1.0};
+}
+
+/// Standard deviation of every simulated value, from the covariance of the parameters: two
+/// simulations per parameter direction.
+MatrixXd prediction_sd(const calibration::Problem& problem, const study::FitResult& result,
+                       std::size_t target) {
+  const auto& u = result.uncertainty;
+  const VectorXd z = result.best().z;
+  const MatrixXd at = problem.predict(target, z).simulated;
+  const auto n = z.size();
+  const MatrixXd inverse = problem.space().slopes(z).partialPivLu().inverse();
+  VectorXd se(n);
+  for (Index i = 0; i < n; ++i)
+    se[i] = std::isfinite(u.standard_error[i]) ? u.standard_error[i] : 0.0;
+  const MatrixXd cov_z =
+      inverse * se.asDiagonal() * u.correlation * se.asDiagonal() * inverse.transpose();
+  std::vector<MatrixXd> slope;
+  for (Index j = 0; j < n; ++j) {
+    const double h = 1e-4;
+    VectorXd up = z, down = z;
+    up[j] = std::min(1.0, z[j] + h);
+    down[j] = std::max(0.0, z[j] - h);
+    slope.push_back(
+        (problem.predict(target, up).simulated - problem.predict(target, down).simulated) /
+        (up[j] - down[j]));
+  }
+  MatrixXd variance = MatrixXd::Zero(at.rows(), at.cols());
+  for (Index a = 0; a < n; ++a)
+    for (Index b = 0; b < n; ++b)
+      variance += cov_z(a, b) * slope[static_cast<std::size_t>(a)].cwiseProduct(
+                                    slope[static_cast<std::size_t>(b)]);
+  return variance.cwiseMax(0.0).cwiseSqrt();
+}
+
+}  // namespace
+
+Figure fit_picture(const input::FitFile& file, const calibration::Problem& problem,
+                   const study::FitResult& result) {
+  Figure figure(file.name,
+                fmt::format("{} {}, objective {:.4g}; bands: 95 % from the parameters' covariance",
+                            file.law.name, file.info->option, result.best().objective));
+  figure.columns = 2;
+  figure.panel_height_px = 220.0;
+  for (std::size_t k = 0; k < file.targets.size(); ++k) {
+    const auto& t = file.targets[k];
+    const MatrixXd sd = prediction_sd(problem, result, k);
+    const MatrixXd simulated = problem.predict(k, result.best().z).simulated;
+    const auto [x_label, x_factor] = label(t.x_name);
+    // strains, times and places are read evenly; pressures, rates and inertial numbers by decades
+    const bool even = t.x_name.starts_with("eps_") || t.x_name == "time_s" || t.x_name == "x_m";
+    const bool log_x = !even && t.x.minCoeff() > 0.0 && t.x.maxCoeff() > 8.0 * t.x.minCoeff();
+    const AxisScale scale = log_x ? AxisScale::logarithmic : AxisScale::linear;
+    const auto x = scaled(t.x, x_factor);
+    // a band needs x in order; loading and unloading would fold it
+    const bool ordered = std::is_sorted(x.begin(), x.end());
+    for (std::size_t c = 0; c < t.channels.size(); ++c) {
+      const auto col = static_cast<Index>(c);
+      const auto [y_label, factor] = label(t.channels[c].name);
+      const VectorXd s = simulated.col(col), b = result.uncertainty.quantile * sd.col(col);
+      Axes& axes = figure.add_axes();
+      axes.title = t.name + (t.held_out ? " (held out, predicted)" : "");
+      axes.x = {x_label, scale};
+      axes.y.label = y_label;
+      if (ordered) axes.band("", x, scaled(s - b, factor), scaled(s + b, factor), {Colour::blue});
+      axes.points("measured", x, scaled(t.channels[c].observed, factor),
+                  {Colour::black, 1.0, Marker::ring, 5.0});
+      axes.line(t.held_out ? "predicted" : "fitted", x, scaled(s, factor), {Colour::blue});
+      Axes& residuals = figure.add_axes();
+      residuals.title = "simulated - measured";
+      residuals.x = {x_label, scale};
+      residuals.y.label = y_label;
+      const std::vector<double> zero(x.size(), 0.0);
+      residuals.line("", x, zero, {Colour::grey, 1.0});
+      residuals.points("", x, scaled(s - t.channels[c].observed, factor),
+                       {Colour::vermillion, 1.0, Marker::circle, 5.0});
+    }
+  }
+  return figure;
+}
+
+Figure fit_diagnostics(const input::FitFile& file, const study::FitResult& result) {
+  Figure figure(file.name + ": how well the data determine the parameters",
+                fmt::format("{} start{}, {} distinct {}", result.starts.size(),
+                            result.starts.size() == 1 ? "" : "s", result.clusters.size(),
+                            result.clusters.size() == 1 ? "optimum" : "optima"));
+  figure.columns = 3;
+  figure.panel_width_px = 300.0;
+  figure.panel_height_px = 220.0;
+  Axes& convergence = figure.add_axes();
+  convergence.title = "convergence";
+  convergence.x.label = "evaluations with and without gradient";
+  convergence.y = {"objective", AxisScale::logarithmic};
+  for (const auto& s : result.starts) {
+    std::vector<double> x, y;
+    for (const auto& t : s.optimum.trace) {
+      x.push_back(static_cast<double>(t.evaluations + t.gradients));
+      y.push_back(t.objective);
+    }
+    convergence.line("", x, y, {Colour::blue, 0.8});
+  }
+  // parameter i against j, coloured by correlation: a table that is read at a glance
+  Axes& correlation = figure.add_axes();
+  correlation.title = "correlation";
+  std::vector<double> a, b, r;
+  const Index n = result.uncertainty.correlation.rows();
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j) {
+      a.push_back(static_cast<double>(j + 1));
+      b.push_back(static_cast<double>(i + 1));
+      r.push_back(result.uncertainty.correlation(i, j));
+    }
+  const double edge = static_cast<double>(n) + 0.5;
+  std::string names;
+  for (std::size_t i = 0; i < file.free.size(); ++i)
+    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", i + 1, file.free[i].name);
+  constexpr std::size_t widest = 44;  // characters below a panel
+  if (names.size() > widest) names = "parameter, in the order of fit.json";
+  correlation.x = {names, AxisScale::linear, 0.5, edge};
+  correlation.y = {"parameter", AxisScale::linear, 0.5, edge};
+  correlation.scatter(a, b, r, {"correlation", AxisScale::linear, -1.0, 1.0}, {18.0, {}});
+  for (const auto& profile : result.profiles) {
+    const auto i = static_cast<std::size_t>(profile.parameter);
+    Axes& axes = figure.add_axes();
+    axes.title = "profile of " + file.free[i].name;
+    axes.x.label = fmt::format("{} ({})", file.free[i].name, file.free[i].unit);
+    axes.y = {"excess (95 % at 3.84)", AxisScale::linear, 0.0, 8.0};
+    axes.line("", profile.value, profile.excess, {Colour::blue, 1.8, Marker::circle, 4.0});
+    const double limit = result.uncertainty.quantile * result.uncertainty.quantile;
+    const std::array<double, 2> ends{profile.value.front(), profile.value.back()};
+    const std::array<double, 2> level{limit, limit};
+    if (ends[0] < ends[1]) axes.dashed("", ends, level, {Colour::grey, 1.0});
+  }
+  return figure;
+}
+
+}  // namespace repose::report

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "input/read_scene.hpp"
+#include "mpm/step/simulation.hpp"
+
+namespace repose::report {
+
+/// The state of a column collapse at one moment. Lengths in m; x_m, y_m and value have one entry
+/// for each material point.
+struct HeapPicture {
+  std::string title, subtitle;
+  double width_m = 0.0, height_m = 0.0;  // of the box, whose lower left corner is the origin
+  std::span<const double> x_m, y_m;
+  std::span<const double> value;
+  std::string value_label;       // with its unit: "von Mises stress (kPa)"
+  double point_spacing_m = 0.0;  // between neighbours at the start: h / sqrt(points per cell)
+  /// Gravity is turned by this angle towards +x; drawn as an arrow. Absent: none is drawn.
+  std::optional<double> tilt_deg{};
+};
+
+/// Draws the points coloured by value in their box, to scale, as SVG. If a few extreme values would
+/// take up most of the colours, those end at the 0.5 % and 99.5 % quantiles and the subtitle says
+/// so. Errors: std::invalid_argument for a box or spacing that is not positive or arrays that
+/// differ in length; PlotError; IoError.
+void write_heap_picture(const std::filesystem::path& path, const HeapPicture& picture);
+
+/// The points of a simulation as they are, coloured by what the scene's [output] asks for; in space
+/// a slice of one cell's width. False if there is nothing in it. Errors: PlotError, IoError.
+bool draw_final_picture(const input::SceneFile& scene, const mpm::Simulation& simulation,
+                        const std::filesystem::path& path);
+
+}  // namespace repose::report

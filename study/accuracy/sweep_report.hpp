@@ -1,0 +1,46 @@
+#pragma once
+/// \file
+/// The tables of `repose chart mpm`, and its answers: does the run-out depend on the step, and what
+/// accuracy does a second buy?
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "study/accuracy/errors.hpp"
+
+namespace repose::study {
+
+/// chart.csv: a row per run that has a result; the changes are those from the run with the shortest
+/// step of the same transfer, kernel and cells, and empty until all of these have a result.
+std::string sweep_csv(std::span<const SweepRun> runs);
+
+/// history.csv: every row of the runs' series.
+std::string history_csv(std::span<const SweepRun> runs);
+
+/// What the answer is measured by: front, height and profile may change by 1 % (of themselves, of
+/// H_0) when the step is quartered.
+constexpr double allowed_change = 0.01;
+
+/// Per transfer, kernel and cell size: the ends at the longest and shortest step, the changes
+/// between both and when the step is quartered, and whether the latter stay below allowed_change.
+nlohmann::ordered_json sweep_answer(const std::vector<SweepSeries>& series);
+
+/// The answer as a table for people.
+std::string answer_text(const nlohmann::ordered_json& answer);
+
+/// errors.csv: a row per finished run with its error in every quantity that has a reference, the
+/// ledger's, its CPU seconds, and whether it lies on the Pareto front of each quantity.
+std::string errors_csv(std::span<const SweepRun> runs, const SweepReference& reference);
+
+/// The extrapolated profile (x_m,depth_m) or kinetic energy (time_s,kinetic_J_per_m).
+std::string curve_csv(const Eigen::VectorXd& shares, Quantity q, const mpm::Scene& scene,
+                      double bin);
+
+/// The reference with its error bars, and per family and quantity the observed orders and the
+/// constants of the error model.
+nlohmann::ordered_json errors_answer(std::span<const SweepRun> runs,
+                                     const SweepReference& reference);
+
+/// The same as a table for people.
+std::string errors_text(const nlohmann::ordered_json& answer);
+
+}  // namespace repose::study

@@ -1,0 +1,369 @@
+#include "study/fit/fit_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "io/result_folder.hpp"
+#include "repose_version.hpp"
+
+namespace repose::study {
+namespace {
+
+using calibration::Optimum;
+using calibration::StartResult;
+using Eigen::Index;
+using Json = nlohmann::ordered_json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+Json list(const Eigen::VectorXd& v) {
+  Json out = Json::array();
+  for (const double x : v) out.push_back(number(x));
+  return out;
+}
+
+Eigen::VectorXd vector(const Json& list) {
+  Eigen::VectorXd v(static_cast<Index>(list.size()));
+  for (Index i = 0; i < v.size(); ++i)
+    v[i] = list[static_cast<std::size_t>(i)].is_null()
+               ? std::nan("")
+               : list[static_cast<std::size_t>(i)].get<double>();
+  return v;
+}
+
+Json json_of(const Optimum& o) {
+  Json out;
+  out["z"] = list(o.z);
+  out["objective"] = number(o.objective);
+  out["why"] = o.why;
+  out["evaluations"] = o.evaluations;
+  out["gradients"] = o.gradients;
+  out["seconds"] = o.seconds;
+  out["failed"] = o.failed;
+  Json trace = Json::array();
+  for (const auto& t : o.trace)
+    trace.push_back({t.evaluations, t.gradients, t.seconds, number(t.objective)});
+  out["trace"] = std::move(trace);
+  return out;
+}
+
+Optimum optimum_of(const Json& j) {
+  Optimum o;
+  o.z = vector(j.at("z"));
+  o.objective = j.at("objective").is_null() ? std::numeric_limits<double>::infinity()
+                                            : j.at("objective").get<double>();
+  o.why = j.at("why").get<std::string>();
+  o.evaluations = j.at("evaluations").get<long>();
+  o.gradients = j.at("gradients").get<long>();
+  o.seconds = j.at("seconds").get<double>();
+  o.failed = j.at("failed").get<bool>();
+  for (const Json& t : j.at("trace"))
+    o.trace.push_back(
+        {t.at(0).get<long>(), t.at(1).get<long>(), t.at(2).get<double>(),
+         t.at(3).is_null() ? std::numeric_limits<double>::infinity() : t.at(3).get<double>()});
+  return o;
+}
+
+Json channel_json(const calibration::Target& target, const calibration::ChannelScore& s) {
+  Json c;
+  c["rows"] = s.rows;
+  c["rms"] = number(s.rms);
+  c["rms_over_range"] = number(s.relative_rms);
+  c["bias"] = number(s.bias);
+  c["chi2_per_row"] = number(s.chi2_per_row);
+  c["lag_correlation"] = number(s.lag_correlation);
+  c["systematic"] = s.systematic;
+  c["worst_at_x"] = number(target.x[s.worst_row]);
+  if (!target.held_out) c["objective"] = number(s.objective);
+  return c;
+}
+
+}  // namespace
+
+std::vector<std::string> discrepancies(const input::FitFile& file, const FitResult& result) {
+  std::vector<std::string> texts;
+  for (const auto& s : result.uncertainty.channels) {
+    if (!s.systematic) continue;
+    const auto& t = file.targets[s.target];
+    std::string text =
+        fmt::format("{}{}: {} is off by {:.3g} rms ({:.2g} % of its range), {:.3g} on average",
+                    t.name, t.held_out ? " (held out)" : "", t.channels[s.channel].name, s.rms,
+                    100.0 * s.relative_rms, s.bias);
+    if (std::isfinite(s.chi2_per_row) && s.chi2_per_row > 1.0)
+      text += fmt::format(", {:.2g} times the declared noise", std::sqrt(s.chi2_per_row));
+    if (s.lag_correlation > 0.5)
+      text += fmt::format(", in one direction over stretches (neighbours correlate by {:.2f})",
+                          s.lag_correlation);
+    texts.push_back(text + fmt::format("; worst at {} = {:.4g}", t.x_name, t.x[s.worst_row]));
+  }
+  return texts;
+}
+
+Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
+                const FitResult& result, const std::string& status) {
+  const auto& u = result.uncertainty;
+  const Optimum& best = result.best();
+  Json j;
+  j["repose"] = version_string;
+  j["kind"] = "fit";
+  j["name"] = file.name;
+  j["status"] = status;
+  j["law"] = {{"name", file.info->name},
+              {std::string(file.info->option_key.empty() ? "option" : file.info->option_key),
+               file.info->option}};
+  Json parameters;
+  for (std::size_t i = 0; i < file.free.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    const auto& p = file.free[i];
+    Json e;
+    e["value"] = number(u.values[k]);
+    e["unit"] = p.unit;
+    e["standard_error"] = number(u.standard_error[k]);
+    e["standard_error_if_residuals_were_white"] = number(u.white_error[k]);
+    if (!result.coarse.empty()) e["shift_by_resolution"] = number(u.shift[k]);
+    e["interval_95"] = {number(u.interval[i][0]), number(u.interval[i][1])};
+    for (const auto& profile : result.profiles) {
+      if (profile.parameter != static_cast<int>(i)) continue;
+      e["profile_interval_95"] = {profile.lower_open ? Json(nullptr) : number(profile.lower),
+                                  profile.upper_open ? Json(nullptr) : number(profile.upper)};
+    }
+    if (result.bootstrap.rows() > 0) {
+      std::vector<double> draws(result.bootstrap.col(k).begin(), result.bootstrap.col(k).end());
+      std::sort(draws.begin(), draws.end());
+      const auto at = [&](double share) {
+        return draws[static_cast<std::size_t>(share * static_cast<double>(draws.size() - 1))];
+      };
+      e["bootstrap_interval_95"] = {at(0.025), at(0.975)};
+    }
+    e["lower"] = p.lower;
+    e["upper"] = p.upper;
+    if (p.of >= 0) e["bounds_are_of_the_ratio_to"] = file.free[static_cast<std::size_t>(p.of)].name;
+    e["at_bound"] = u.at_bound[i] < 0   ? Json("lower")
+                    : u.at_bound[i] > 0 ? Json("upper")
+                                        : Json(false);
+    parameters[p.name] = std::move(e);
+  }
+  j["parameters"] = std::move(parameters);
+  j["objective"] = number(best.objective);
+  j["rows"] = problem.data_rows();
+  j["best_point_broke_off"] = best.failed;
+  Json targets;
+  for (std::size_t k = 0; k < file.targets.size(); ++k) {
+    Json t;
+    t["data"] = file.about[k].data;
+    t["held_out"] = file.targets[k].held_out;
+    double objective = 0.0;
+    for (const auto& s : u.channels) {
+      if (s.target != k) continue;
+      t["channels"][file.targets[k].channels[s.channel].name] = channel_json(file.targets[k], s);
+      objective += s.objective;
+    }
+    if (!file.targets[k].held_out) t["objective"] = number(objective);
+    targets[file.targets[k].name] = std::move(t);
+  }
+  j["targets"] = std::move(targets);
+  j["discrepancy"] = discrepancies(file, result);
+  Json correlation = Json::array();
+  for (Index i = 0; i < u.correlation.rows(); ++i)
+    correlation.push_back(list(u.correlation.row(i)));
+  j["correlation"] = std::move(correlation);
+  Json combinations = Json::array();
+  for (const auto& c : u.combinations) {
+    Json direction;
+    for (std::size_t i = 0; i < file.free.size(); ++i)
+      direction[file.free[i].name] = number(c.direction[static_cast<Index>(i)]);
+    combinations.push_back({{"singular_value", number(c.singular_value)},
+                            {"relative_sd", number(c.relative_sd)},
+                            {"determined", c.relative_sd < 0.5},
+                            {"direction", direction},
+                            {"words", c.words}});
+  }
+  j["singular_values_of_scaled_jacobian"] = std::move(combinations);
+  Json optima = Json::array();
+  for (const auto& c : result.clusters) {
+    Json values;
+    const Eigen::VectorXd v = problem.space().values(c.z);
+    for (std::size_t i = 0; i < file.free.size(); ++i)
+      values[file.free[i].name] = number(v[static_cast<Index>(i)]);
+    optima.push_back({{"objective", number(c.objective)},
+                      {"starts", c.starts},
+                      {"fits_as_well_as_the_best", c.same_prediction},
+                      {"values", values}});
+  }
+  j["optima"] = std::move(optima);
+  const calibration::Spent spent = problem.spent();
+  long evaluations = 0, gradients = 0;
+  Json ends;
+  for (const StartResult& s : result.starts) {
+    evaluations += s.optimum.evaluations;
+    gradients += s.optimum.gradients;
+    if (s.global.z.size() > 0 && file.options.local != "none") {
+      evaluations += s.global.evaluations;
+      gradients += s.global.gradients;
+    }
+    auto& n = ends[s.optimum.why];
+    n = n.is_null() ? Json(1) : Json(n.get<int>() + 1);
+  }
+  j["counts"] = {{"starts", result.starts.size()},
+                 {"evaluations", evaluations},
+                 {"gradients", gradients},
+                 {"ends", ends},
+                 {"this_session",
+                  {{"evaluations", spent.evaluations},
+                   {"gradients", spent.gradients},
+                   {"paths", spent.paths},
+                   {"failed_trials", spent.failures}}}};
+  if (!result.coarse.empty()) {
+    j["coarse"] = {{"starts", result.coarse.size()},
+                   {"objective", number(calibration::best_of(result.coarse).optimum.objective)}};
+    for (const StartResult& s : result.coarse) {
+      const Eigen::VectorXd v = problem.space().values(s.optimum.z);
+      Json values;
+      for (std::size_t i = 0; i < file.free.size(); ++i)
+        values[file.free[i].name] = number(v[static_cast<Index>(i)]);
+      j["coarse"]["ends"].push_back({{"start", s.index},
+                                     {"objective", number(s.optimum.objective)},
+                                     {"evaluations", s.optimum.evaluations},
+                                     {"gradients", s.optimum.gradients},
+                                     {"values", values}});
+    }
+  }
+  if (const long done = file.runs->simulated, kept = file.runs->recalled; done + kept > 0)
+    j["counts"]["this_session"]["scenes"] = {{"simulated", done}, {"recalled", kept}};
+  j["solver"] = {{"global", file.options.global},
+                 {"local", file.options.local},
+                 {"seed", file.options.seed},
+                 {"balance", file.balance}};
+  j["notes"] = file.notes;
+  j["fingerprint"] = file.fingerprint;
+  return j;
+}
+
+std::string predictions_csv(const input::FitFile& file, const calibration::Problem& problem,
+                            const FitResult& result) {
+  std::string text = "target,held_out,x_name,channel,x,measured,fitted\n";
+  for (std::size_t k = 0; k < file.targets.size(); ++k) {
+    const auto& t = file.targets[k];
+    const Eigen::MatrixXd simulated = problem.predict(k, result.best().z).simulated;
+    for (std::size_t c = 0; c < t.channels.size(); ++c)
+      for (Index i = 0; i < t.x.size(); ++i)
+        text += fmt::format("\"{}\",{},{},{},{},{},{}\n", t.name, t.held_out ? "yes" : "no",
+                            t.x_name, t.channels[c].name, t.x[i], t.channels[c].observed[i],
+                            simulated(i, static_cast<Index>(c)));
+  }
+  return text;
+}
+
+std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
+  const auto& u = result.uncertainty;
+  const LawSpec law = input::fitted_law(file, u.values);
+  std::string text = fmt::format(
+      "# Fitted by repose {} to {} experiments ({}); objective {:.6g}.\n# 95 % intervals in "
+      "comments.\n\n[law]\nname = \"{}\"\n",
+      version_string,
+      std::count_if(file.targets.begin(), file.targets.end(),
+                    [](const auto& t) { return !t.held_out; }),
+      file.name, result.best().objective, law.name);
+  for (const auto& [key, value] : law.options)
+    text += value == "true" || value == "false" ? fmt::format("{} = {}\n", key, value)
+                                                : fmt::format("{} = \"{}\"\n", key, value);
+  const auto line = [](const std::string& key, double x, const std::string& comment) {
+    std::string digits = fmt::format("{}", x);
+    if (digits.find_first_of(".en") == std::string::npos) digits += ".0";
+    const std::string assignment = fmt::format("{} = {}", key, digits);
+    return comment.empty() ? assignment + "\n" : fmt::format("{:<32}# {}\n", assignment, comment);
+  };
+  const auto comment = [&](std::size_t i) {
+    if (u.at_bound[i] != 0) return std::string("at its bound: not determined by the data");
+    if (!std::isfinite(u.standard_error[static_cast<Index>(i)]))
+      return std::string("the data do not determine it");
+    return fmt::format("{:.6g} to {:.6g}{}{}", u.interval[i][0], u.interval[i][1],
+                       file.free[i].unit == "-" ? "" : " ",
+                       file.free[i].unit == "-" ? "" : file.free[i].unit);
+  };
+  for (const ParamInfo& p : file.info->parameters) {
+    const auto value = law.values.find(std::string(p.name));
+    if (value == law.values.end()) continue;
+    std::string words = "fixed";
+    for (std::size_t i = 0; i < file.free.size(); ++i)
+      if (file.law_key[i] == p.name) words = comment(i);
+    text += line(std::string(p.name), value->second, words);
+  }
+  for (std::size_t i = 0; i < file.free.size(); ++i)
+    if (file.law_key[i].empty())
+      text += "# " + line(file.free[i].name, u.values[static_cast<Index>(i)], comment(i));
+  return text;
+}
+
+std::string journal_head(const input::FitFile& file) {
+  return Json{{"fit", file.name}, {"fingerprint", file.fingerprint}}.dump() + "\n";
+}
+
+std::string journal_line(const StartResult& start) {
+  Json j;
+  j["start"] = start.index;
+  j["from"] = list(start.from);
+  if (start.global.z.size() > 0) j["global"] = json_of(start.global);
+  j["optimum"] = json_of(start.optimum);
+  return j.dump() + "\n";
+}
+
+std::vector<StartResult> read_journal(const std::filesystem::path& path,
+                                      const input::FitFile& file) {
+  std::vector<StartResult> starts;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return starts;
+  std::ifstream in(path);
+  if (!in) throw io::IoError(path, "cannot read", errno);
+  std::string line;
+  bool first = true;
+  while (std::getline(in, line)) {
+    const bool whole = !in.eof();
+    const Json j = Json::parse(line, nullptr, false);
+    if (j.is_discarded() || !whole) break;  // cut short by a kill
+    if (first) {
+      first = false;
+      if (j.value("fingerprint", "") != file.fingerprint)
+        throw input::BadInput(
+            {fmt::format("{}: these starts belong to another fit (input, data or seed "
+                         "differ); use another folder, or start anew without --resume",
+                         path.string())});
+      continue;
+    }
+    try {
+      StartResult s;
+      s.index = j.at("start").get<int>();
+      s.from = vector(j.at("from"));
+      if (j.contains("global")) s.global = optimum_of(j.at("global"));
+      s.optimum = optimum_of(j.at("optimum"));
+      starts.push_back(std::move(s));
+    } catch (const nlohmann::json::exception&) {
+      throw input::BadInput({fmt::format("{}: not a journal of starts", path.string())});
+    }
+  }
+  return starts;
+}
+
+void merge_into(std::vector<StartResult>& all, std::vector<StartResult> more,
+                const std::string& from) {
+  for (StartResult& s : more) {
+    const auto same = std::find_if(all.begin(), all.end(),
+                                   [&](const StartResult& a) { return a.index == s.index; });
+    if (same == all.end()) {
+      all.push_back(std::move(s));
+    } else if (same->optimum.z != s.optimum.z) {
+      throw input::BadInput(
+          {fmt::format("{}: start {} ended elsewhere than in another folder; both cannot "
+                       "come from the same program and input",
+                       from, s.index)});
+    }
+  }
+  std::sort(all.begin(), all.end(),
+            [](const StartResult& a, const StartResult& b) { return a.index < b.index; });
+}
+
+}  // namespace repose::study

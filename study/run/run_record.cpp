@@ -1,0 +1,227 @@
+#include "study/run/run_record.hpp"
+
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+#include "repose_version.hpp"
+
+namespace repose::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
+Json to_json(const toml::node& node) {
+  if (const toml::table* table = node.as_table()) {
+    Json object = Json::object();
+    for (const auto& [key, child] : *table) object[std::string(key.str())] = to_json(child);
+    return object;
+  }
+  if (const toml::array* list = node.as_array()) {
+    Json values = Json::array();
+    for (const toml::node& child : *list) values.push_back(to_json(child));
+    return values;
+  }
+  if (const auto* value = node.as_integer()) return value->get();
+  if (const auto* value = node.as_floating_point()) return value->get();
+  if (const auto* value = node.as_boolean()) return value->get();
+  if (const auto* value = node.as_string()) return value->get();
+  return {};
+}
+
+/// What the plane has per metre of depth is whole in space: kinetic_J_per_m, kinetic_J.
+std::string named(std::string name, std::size_t dimensions) {
+  const std::string_view per_metre = "_per_m";
+  if (dimensions == 3 && name.ends_with(per_metre)) name.resize(name.size() - per_metre.size());
+  return name;
+}
+
+}  // namespace
+
+std::vector<std::string> series_columns(std::size_t dimensions) {
+  std::vector<std::string> columns{"time_s",
+                                   "step",
+                                   "dt_s",
+                                   "front_m",
+                                   "front_max_m",
+                                   "height_m",
+                                   "kinetic_J_per_m",
+                                   "potential_J_per_m",
+                                   "elastic_J_per_m",
+                                   "dissipated_J_per_m",
+                                   "mass_kg_per_m",
+                                   "momentum_x",
+                                   "momentum_y",
+                                   "density_min",
+                                   "density_max",
+                                   "points_separated",
+                                   "transfer_loss_J_per_m",
+                                   "wall_loss_J_per_m",
+                                   "energy_residual_J_per_m",
+                                   "outflow_kg_per_m",
+                                   "angular_momentum",
+                                   "front_99_m"};
+  if (dimensions == 2) return columns;
+  for (std::string& column : columns) column = named(column, dimensions);
+  for (std::string& column : columns)
+    if (column == "angular_momentum") column += "_z";
+  columns.insert(columns.end(), {"angular_momentum_x", "angular_momentum_y", "momentum_z"});
+  return columns;
+}
+
+std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensions) {
+  std::vector<double> values{row.time_s,
+                             static_cast<double>(row.step),
+                             row.dt_s,
+                             row.front_m,
+                             row.front_max_m,
+                             row.height_m,
+                             row.kinetic_J_per_m,
+                             row.potential_J_per_m,
+                             row.elastic_J_per_m,
+                             row.dissipated_J_per_m,
+                             row.mass_kg_per_m,
+                             row.momentum_x,
+                             row.momentum_y,
+                             row.density_min,
+                             row.density_max,
+                             static_cast<double>(row.points_separated),
+                             row.transfer_loss_J_per_m,
+                             row.wall_loss_J_per_m,
+                             row.energy_residual_J_per_m,
+                             row.outflow_kg_per_m,
+                             row.angular_momentum,
+                             row.front_99_m};
+  if (dimensions == 3)
+    values.insert(values.end(), {row.angular_momentum_x, row.angular_momentum_y, row.momentum_z});
+  return values;
+}
+
+Usage usage() {
+  rusage self{};
+  getrusage(RUSAGE_SELF, &self);
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return {std::chrono::duration<double>(now).count(),
+          seconds(self.ru_utime) + seconds(self.ru_stime),
+          static_cast<double>(self.ru_maxrss) * 1024.0 / 1e6};  // ru_maxrss counts KiB
+}
+
+RunRecord::RunRecord(const mpm::Simulation& start)
+    : dimensions(start.scene().dimensions()),
+      initial_points(start.point_count()) {
+  const mpm::SeriesRow row = start.diagnostics();
+  initial_potential_J_per_m = row.potential_J_per_m;
+  initial_mass_kg_per_m = row.mass_kg_per_m;
+  include(row);
+}
+
+void RunRecord::include(const mpm::SeriesRow& row) {
+  peak_kinetic_J_per_m = std::max(peak_kinetic_J_per_m, row.kinetic_J_per_m);
+}
+
+void RunRecord::continue_from(const std::filesystem::path& summary) {
+  errno = 0;
+  std::ifstream in(summary);
+  if (!in) throw io::IoError(summary, "cannot read what the interrupted run noted", errno);
+  try {
+    const Json noted = Json::parse(in);
+    peak_kinetic_J_per_m =
+        std::max(peak_kinetic_J_per_m, double{noted.at(named("peak_kinetic_J_per_m", dimensions))});
+    wall_s = noted.at("wall_s");
+    cpu_s = noted.at("cpu_s");
+    sessions = int{noted.at("sessions")} + 1;
+  } catch (const Json::exception& error) {
+    throw io::IoError(summary, std::string("is not the summary of a run: ") + error.what());
+  }
+}
+
+std::string noted_status(const std::filesystem::path& summary) {
+  std::ifstream in(summary);
+  const Json noted = in ? Json::parse(in, nullptr, false) : Json();
+  const auto status = noted.is_object() ? noted.find("status") : noted.end();
+  return status != noted.end() && status->is_string() ? status->get<std::string>() : "";
+}
+
+double RunRecord::energy_error(const mpm::SeriesRow& last) const {
+  const double scale =
+      std::max(initial_potential_J_per_m - last.potential_J_per_m, peak_kinetic_J_per_m);
+  const double residual = std::abs(last.energy_residual_J_per_m);
+  return residual == 0.0 ? 0.0 : residual / scale;
+}
+
+std::int64_t RunRecord::lost_points(std::int64_t present, const mpm::SeriesRow& last) const {
+  // What has left through an open edge is known by its mass: a quarter of a point is far above the
+  // round-off of the sums, and below the mass of any whole point.
+  const double missing = initial_mass_kg_per_m - last.mass_kg_per_m - last.outflow_kg_per_m;
+  const double point = initial_mass_kg_per_m / static_cast<double>(initial_points);
+  const bool accounted = last.outflow_kg_per_m > 0.0 && std::abs(missing) < 0.25 * point;
+  return accounted ? 0 : initial_points - present;
+}
+
+std::string summary_text(const RunFacts& facts, const RunRecord& record,
+                         const mpm::Simulation& simulation, const Usage& spent) {
+  const mpm::SeriesRow last = simulation.diagnostics();
+  const mpm::Simulation::Counters counters = simulation.counters();
+  const double wall = record.wall_s + spent.wall_s;
+  Json s;
+  const auto put = [&](const char* name, double x) { s[named(name, record.dimensions)] = x; };
+  s["repose"] = version_string;
+  s["status"] = facts.status;
+  if (!facts.reason.empty()) s["reason"] = facts.reason;
+  s["name"] = simulation.scene().name;
+  s["seed"] = facts.seed;
+  s["points"] = record.initial_points;
+  s["lost_points"] = record.lost_points(simulation.point_count(), last);
+  s["steps"] = last.step;
+  s["time_s"] = last.time_s;
+  s["dt_min_s"] = counters.dt_min_s;
+  s["dt_max_s"] = counters.dt_max_s;
+  s["front_m"] = last.front_m;
+  s["front_99_m"] = last.front_99_m;
+  s["front_max_m"] = last.front_max_m;
+  s["height_m"] = last.height_m;
+  s["density_min"] = last.density_min;
+  s["density_max"] = last.density_max;
+  s["points_separated"] = last.points_separated;
+  put("mass_kg_per_m", last.mass_kg_per_m);
+  s["mass_error"] =
+      (last.mass_kg_per_m + last.outflow_kg_per_m) / record.initial_mass_kg_per_m - 1.0;
+  put("outflow_kg_per_m", last.outflow_kg_per_m);
+  put("kinetic_J_per_m", last.kinetic_J_per_m);
+  put("peak_kinetic_J_per_m", record.peak_kinetic_J_per_m);
+  put("potential_drop_J_per_m", record.initial_potential_J_per_m - last.potential_J_per_m);
+  s["angular_momentum"] = last.angular_momentum;
+  put("elastic_J_per_m", last.elastic_J_per_m);
+  put("dissipated_J_per_m", last.dissipated_J_per_m);
+  put("transfer_loss_J_per_m", last.transfer_loss_J_per_m);
+  put("wall_loss_J_per_m", last.wall_loss_J_per_m);
+  put("energy_residual_J_per_m", last.energy_residual_J_per_m);
+  s["energy_error"] = record.energy_error(last);
+  s["wall_s"] = wall;
+  s["cpu_s"] = record.cpu_s + spent.cpu_s;
+  s["point_steps_per_s"] = static_cast<double>(simulation.point_steps()) / wall;
+  s["threads"] = counters.threads;
+  s["state_memory_MB"] = counters.memory_MB;
+  s["peak_memory_MB"] = spent.peak_memory_MB;
+  s["wall_corrections"] = counters.wall_corrections;
+  s["sorts"] = counters.sorts;
+  if (simulation.scene().sleep_speed > 0.0) s["points_asleep"] = counters.points_asleep;
+  if (simulation.scene().viscosity == mpm::Viscosity::implicit_solve) {
+    s["newton_iterations"] = counters.newton_iterations;
+    s["cg_iterations"] = counters.cg_iterations;
+  }
+  s["sessions"] = record.sessions;
+  s["warnings"] = facts.warnings;
+  s["input"] = to_json(facts.input);
+  return s.dump(2) + "\n";
+}
+
+}  // namespace repose::study

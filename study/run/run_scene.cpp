@@ -1,0 +1,335 @@
+#include "study/run/run_scene.hpp"
+
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "input/resolved_scene.hpp"
+#include "io/interrupt.hpp"
+#include "study/run/output_schedule.hpp"
+#include "study/run/run_record.hpp"
+
+namespace repose::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Says where a run stands: warnings on the standard error output, the rest on the standard output.
+class Voice {
+ public:
+  explicit Voice(const RunRequest& request) : quiet_(request.quiet), json_(request.json) {}
+
+  void warn(const std::string& text) const {
+    if (json_)
+      event({{"event", "warning"}, {"message", text}});
+    else if (!quiet_)
+      fmt::print(stderr, "warning: {}\n", text);
+  }
+  void say(const std::string& text) const {
+    if (!json_ && !quiet_) fmt::print("{}", text);
+    std::fflush(stdout);
+  }
+  void event(const Json& line) const {
+    if (json_) fmt::print("{}\n", line.dump());
+    std::fflush(stdout);
+  }
+
+ private:
+  bool quiet_, json_;
+};
+
+/// Refuses to go on with anything but the input that was interrupted.
+void require_same_input(const RunRequest& request, const fs::path& stored) {
+  const input::InputFile there = input::InputFile::read(stored);
+  const input::InputFile here = input::InputFile::parse(request.input, "resolved input");
+  std::vector<std::string> lines = input::differences(there.root(), here.root());
+  if (lines.empty()) return;
+  for (std::string& line : lines) line = fmt::format("{}: {}", stored.string(), line);
+  lines.push_back(
+      fmt::format("{}: a run is resumed with the input it was begun with", stored.string()));
+  throw input::BadInput(std::move(lines));
+}
+
+class Run {
+ public:
+  explicit Run(const RunRequest& request)
+      : request_(request),
+        scene_(request.file.scene),
+        voice_(request),
+        begun_(usage()),
+        simulation_(scene_, request.threads),
+        record_(simulation_),
+        schedule_(scene_.end_time, scene_.series_interval, scene_.frame_interval),
+        folder_(request.folder) {}
+
+  io::ExitCode go();
+
+ private:
+  io::ExitCode advance();
+  io::ExitCode finish();
+  io::ExitCode stop_at_interrupt();
+  io::ExitCode stop_at_failure(const std::string& reason);
+
+  void start();
+  void resume();
+  void write_due();
+  void write_frame();
+  void write_profile() const;
+  bool write_picture();
+  void write_summary(const std::string& status, const std::string& reason);
+  void tell_warnings();
+  bool finite_state(std::string& reason) const;
+
+  const RunRequest& request_;
+  const mpm::Scene& scene_;
+  Voice voice_;
+  Usage begun_;
+  mpm::Simulation simulation_;
+  RunRecord record_;
+  OutputSchedule schedule_;
+  io::ResultFolder folder_;
+  std::optional<io::RowWriter> series_;
+  std::optional<io::FrameWriter> frames_;
+  std::set<std::string> told_;             ///< warnings already printed, without_figures()
+  std::vector<std::string> own_warnings_;  ///< beside the simulation's
+};
+
+io::ExitCode Run::go() {
+  for (const std::string& note : request_.file.notes) {
+    voice_.warn(note);
+    own_warnings_.push_back(note);
+  }
+  if (request_.resume)
+    resume();
+  else
+    start();
+  return advance();
+}
+
+void Run::start() {
+  if (noted_status(folder_.file("summary.json")) == "interrupted")
+    voice_.warn(fmt::format("{} held an interrupted run, which begins anew; --resume continues one",
+                            folder_.path().string()));
+  folder_.remove_old_outputs();
+  folder_.write_file("input.toml", request_.input);
+  series_.emplace(
+      io::RowWriter::create(folder_.file("series.csv"), series_columns(scene_.dimensions())));
+  if (scene_.frame_interval > 0.0) frames_.emplace(folder_.frames(), scene_.name);
+  voice_.event({{"event", "start"},
+                {"name", scene_.name},
+                {"points", record_.initial_points},
+                {"end_time_s", scene_.end_time},
+                {"folder", folder_.path().string()}});
+  write_due();
+}
+
+void Run::resume() {
+  require_same_input(request_, folder_.file("input.toml"));
+  record_.continue_from(folder_.file("summary.json"));
+  simulation_.load(folder_.checkpoint());
+  const double time = simulation_.time();
+  series_.emplace(io::RowWriter::continued(folder_.file("series.csv"),
+                                           series_columns(scene_.dimensions()), time));
+  if (scene_.frame_interval > 0.0)
+    frames_ = io::FrameWriter::continued(folder_.frames(), scene_.name, time);
+  voice_.event({{"event", "resume"},
+                {"name", scene_.name},
+                {"time_s", time},
+                {"step", simulation_.steps()},
+                {"folder", folder_.path().string()}});
+  voice_.say(fmt::format("{}: resumed at t = {:.6g} s, step {}\n", scene_.name, time,
+                         simulation_.steps()));
+}
+
+io::ExitCode Run::advance() {
+  const io::InterruptGuard interrupt;
+  io::Progress progress(io::Progress::mode(request_.quiet, request_.json), scene_.name,
+                        scene_.end_time);
+  try {
+    while (simulation_.time() < scene_.end_time) {
+      const bool first = simulation_.steps() == 0;
+      simulation_.step(schedule_.next(simulation_.time()));
+      if (simulation_.point_count() == 0) {
+        own_warnings_.push_back(
+            fmt::format("all material had left the box by t = {:.6g} s", simulation_.time()));
+        progress.clear();
+        voice_.warn(own_warnings_.back());
+        break;
+      }
+      write_due();
+      if (first) {
+        progress.clear();
+        tell_warnings();
+      }
+      const bool end = simulation_.time() >= scene_.end_time;
+      progress.update(simulation_.time(), simulation_.steps(), simulation_.point_steps(), end);
+      if (interrupt.requested() && !end) {
+        progress.clear();
+        return stop_at_interrupt();
+      }
+    }
+  } catch (const mpm::NumericalFailure& failure) {
+    progress.clear();
+    return stop_at_failure(failure.what());
+  }
+  progress.clear();
+  return finish();
+}
+
+/// Writes the row and the frame that belong to this very moment.
+void Run::write_due() {
+  const double time = simulation_.time();
+  if (schedule_.row_due(time)) {
+    const mpm::SeriesRow row = simulation_.diagnostics();
+    record_.include(row);
+    for (const double x : series_values(row, scene_.dimensions()))
+      if (!std::isfinite(x))
+        throw mpm::NumericalFailure(fmt::format(
+            "step {} at t = {:.6g} s: a figure of the series is not finite", row.step, time));
+    series_->row(series_values(row, scene_.dimensions()));
+  }
+  if (frames_ && schedule_.frame_due(time)) write_frame();
+}
+
+void Run::write_frame() {
+  const mpm::Simulation::Snapshot shot = simulation_.snapshot();
+  if (!shot.x_m.empty()) frames_->write(shot.view(simulation_.time()));
+}
+
+void Run::write_profile() const {
+  const mpm::Simulation::Profile profile = simulation_.profile();
+  std::string text = "x_m,depth_m\n";
+  for (std::size_t i = 0; i < profile.x_m.size(); ++i)
+    text += fmt::format("{},{}\n", profile.x_m[i], profile.depth_m[i]);
+  folder_.write_file("profile.csv", text);
+}
+
+/// Whether there is one: a picture is never worth a run.
+bool Run::write_picture() {
+  if (!request_.picture || simulation_.point_count() == 0) return false;
+  try {
+    return request_.picture(request_.file, simulation_, folder_.file("final.svg"));
+  } catch (const std::runtime_error& error) {
+    own_warnings_.push_back(fmt::format("final.svg could not be drawn: {}", error.what()));
+    voice_.warn(own_warnings_.back());
+    return false;
+  }
+}
+
+/// A warning without its figures, which may grow while it stays the same warning.
+std::string without_figures(std::string_view text) {
+  std::string words;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    if (word.empty() || std::isdigit(static_cast<unsigned char>(word.front())) == 0)
+      words += std::string(word) + ' ';
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+  }
+  return words;
+}
+
+void Run::tell_warnings() {
+  for (const std::string& warning : simulation_.warnings()) {
+    if (!told_.insert(without_figures(warning)).second) continue;
+    voice_.warn(warning);
+  }
+}
+
+void Run::write_summary(const std::string& status, const std::string& reason) {
+  RunFacts facts;
+  facts.status = status;
+  facts.reason = reason;
+  facts.input = input::InputFile::parse(request_.input, "input.toml").root();
+  facts.seed = request_.seed;
+  facts.warnings = simulation_.warnings();
+  facts.warnings.insert(facts.warnings.end(), own_warnings_.begin(), own_warnings_.end());
+  Usage spent = usage();
+  spent.wall_s -= begun_.wall_s;
+  spent.cpu_s -= begun_.cpu_s;
+  folder_.write_file("summary.json", summary_text(facts, record_, simulation_, spent));
+}
+
+io::ExitCode Run::finish() {
+  const mpm::SeriesRow last = simulation_.diagnostics();
+  const std::int64_t lost = record_.lost_points(simulation_.point_count(), last);
+  if (lost != 0) return stop_at_failure(fmt::format("{} points have been lost", lost));
+  tell_warnings();
+  write_profile();
+  const bool drawn = write_picture();
+  write_summary("done", "");
+  std::error_code ignored;
+  fs::remove(folder_.checkpoint(), ignored);  // of an interruption that is made good
+
+  const double wall = record_.wall_s + usage().wall_s - begun_.wall_s;
+  voice_.event(
+      {{"event", "end"}, {"status", "done"}, {"exit", 0}, {"folder", folder_.path().string()}});
+  std::string files = drawn ? "final.svg, series.csv, profile.csv" : "series.csv, profile.csv";
+  if (frames_) files += fmt::format(", frames/{}", frames_->series_path().filename().string());
+  voice_.say(fmt::format(
+      "{}: done in {}, {} steps, {:.1f} Mpoint-steps/s\n"
+      "  front {:.4g} m, height {:.4g} m, kinetic energy {:.2g} {}, energy error {:.2g} %\n"
+      "  {}: {}\n",
+      scene_.name, io::duration_text(wall), last.step,
+      static_cast<double>(simulation_.point_steps()) / wall / 1e6, last.front_m, last.height_m,
+      last.kinetic_J_per_m, scene_.dimensions() == 2 ? "J/m" : "J",
+      100.0 * record_.energy_error(last), folder_.path().string(), files));
+  return io::ExitCode::done;
+}
+
+io::ExitCode Run::stop_at_interrupt() {
+  simulation_.save(folder_.checkpoint());
+  write_summary("interrupted", "");
+  voice_.event({{"event", "end"},
+                {"status", "interrupted"},
+                {"exit", static_cast<int>(io::ExitCode::interrupted)},
+                {"time_s", simulation_.time()},
+                {"folder", folder_.path().string()}});
+  if (!request_.json && !request_.quiet)
+    fmt::print(stderr,
+               "{}: interrupted at t = {:.6g} s; the same command with --resume continues\n",
+               scene_.name, simulation_.time());
+  return io::ExitCode::interrupted;
+}
+
+io::ExitCode Run::stop_at_failure(const std::string& reason) {
+  simulation_.save(folder_.checkpoint());
+  if (!frames_) frames_.emplace(folder_.frames(), scene_.name);
+  if (!schedule_.frame_due(simulation_.time()) || frames_->count() == 0) write_frame();
+  tell_warnings();
+  write_summary("failed", reason);
+  voice_.event({{"event", "end"},
+                {"status", "failed"},
+                {"exit", static_cast<int>(io::ExitCode::numerical_failure)},
+                {"reason", reason},
+                {"folder", folder_.path().string()}});
+  fmt::print(stderr, "{}: failed: {}\n  the state before it is in {}\n", scene_.name, reason,
+             folder_.path().string());
+  return io::ExitCode::numerical_failure;
+}
+
+}  // namespace
+
+io::ExitCode run_scene(const RunRequest& request) {
+  if (request.resume) {
+    if (!fs::is_directory(request.folder))
+      throw io::IoError(request.folder, "there is no such result to resume");
+    const fs::path checkpoint = io::ResultFolder(request.folder).checkpoint();
+    if (!fs::exists(checkpoint)) {
+      if (noted_status(request.folder / "summary.json") != "done")
+        throw io::IoError(checkpoint, "there is no checkpoint to resume from");
+      const Voice voice(request);
+      voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});
+      voice.say(fmt::format("{} is complete: nothing to resume\n", request.folder.string()));
+      return io::ExitCode::done;
+    }
+  }
+  Run run(request);
+  return run.go();
+}
+
+}  // namespace repose::study

@@ -1,0 +1,202 @@
+// `repose run --accuracy`: what it predicts, refuses, runs and leaves; and the errors of a chart.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "app/command_line.hpp"
+#include "study/accuracy/accuracy_table.hpp"
+#include "study/accuracy/errors.hpp"
+#include "tests/scratch_folder.hpp"
+
+namespace repose::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Accuracy : public testing::Test {
+ protected:
+  int run(std::vector<std::string> words, const std::string& out) {
+    words.insert(words.begin(), {"repose"});
+    words.insert(words.end(), {"-o", (base_ / out).string()});
+    std::vector<const char*> argv;
+    for (const std::string& word : words) argv.push_back(word.c_str());
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    const int code = app::run_command_line(static_cast<int>(argv.size()), argv.data());
+    error_ = testing::internal::GetCapturedStderr();
+    text_ = testing::internal::GetCapturedStdout();
+    return code;
+  }
+  /// What `repose run` complains about; it must be bad input and leave nothing.
+  std::string complaint(std::vector<std::string> words) {
+    words.insert(words.begin(), {"run", scene_});
+    EXPECT_EQ(run(words, "bad"), 2) << error_;
+    EXPECT_FALSE(fs::exists(base_ / "bad"));
+    return error_;
+  }
+  nlohmann::json summary(const std::string& out) const {
+    return nlohmann::json::parse(content_of(base_ / out / "summary.json"));
+  }
+
+  const std::string scene_ = REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml";
+  const ScratchFolder scratch_;
+  const fs::path base_ = scratch_.path();
+  std::string error_, text_;
+};
+
+// 0.2 s of the column with cells of 50 and 25 mm (128 and 512 points), a few hundred steps.
+TEST_F(Accuracy, RunsCoarseAndFineAndGivesAnErrorBar) {
+  const std::vector<std::string> words{"run",   scene_,    "--accuracy", "0.2",
+                                       "--for", "kinetic", "--set",      "scene.end_time=0.2"};
+  ASSERT_EQ(run(words, "a"), 0) << error_;
+  const nlohmann::json s = summary("a");
+  EXPECT_EQ(s["kind"], "accuracy");
+  EXPECT_EQ(s["status"], "done");
+  EXPECT_EQ(s["met"], true);
+  EXPECT_LE(s["error_bar"].get<double>(), 0.2);
+  EXPECT_GT(s["error_bar"].get<double>(), 0.0);
+  ASSERT_GE(s["runs"].size(), 2u);
+  EXPECT_GT(s["runs"][0]["h_m"].get<double>(), 1.9 * s["runs"].back()["h_m"].get<double>());
+  EXPECT_GT(s["predicted"]["cpu_s"].get<double>(), 0.0);
+  EXPECT_NE(text_.find("predicted: cells of "), std::string::npos) << text_;
+  EXPECT_NE(text_.find("nine of ten such answers are within 1.5 of it"), std::string::npos)
+      << text_;
+  for (const char* file : {"input.toml", "accuracy.csv", "estimate.csv", "advised.toml"})
+    EXPECT_TRUE(fs::exists(base_ / "a" / file)) << file;
+  // the energy over time begins at rest
+  EXPECT_EQ(content_of(base_ / "a/estimate.csv").substr(0, 28), "time_s,kinetic_J_per_m\n0,0\n0");
+  input::InputFile advised = input::InputFile::read(base_ / "a/advised.toml");
+  EXPECT_EQ(input::read_scene(advised).scene.h, s["finest_h_m"].get<double>());
+
+  // once more, with the runs of before: nothing is simulated, the same comes out
+  std::vector<std::string> again = words;
+  again.insert(again.end(), {"--runs", (base_ / "a/runs").string()});
+  ASSERT_EQ(run(again, "b"), 0) << error_;
+  EXPECT_EQ(summary("b")["cpu_s"], s["cpu_s"]) << "the same seconds, so the same runs";
+  EXPECT_EQ(content_of(base_ / "b/estimate.csv"), content_of(base_ / "a/estimate.csv"));
+}
+
+TEST_F(Accuracy, RefusesBeforehandWhatTheBudgetDoesNotBuy) {
+  const std::string text = complaint({"--accuracy", "0.01", "--for", "kinetic", "--budget", "0.5"});
+  EXPECT_EQ(text.find("kinetic to 1 % needs about "), 0u) << text;
+  EXPECT_NE(text.find("more than the budget of 0.5 s; within it, about "), std::string::npos)
+      << text;
+  const std::size_t advice = text.find(": --accuracy ");
+  ASSERT_NE(advice, std::string::npos) << text;
+  EXPECT_GT(std::stod(text.substr(advice + 13)), 0.01) << text;
+  EXPECT_NE(text.find("; or --budget "), std::string::npos) << text;
+}
+
+TEST_F(Accuracy, SaysWhatIsWrong) {
+  EXPECT_EQ(complaint({"--accuracy", "0.02", "--for", "frnt"}),
+            "--for frnt: one of front, front_99, height, profile, kinetic is needed; did you mean "
+            "'front'?\n");
+  EXPECT_EQ(complaint({"--accuracy", "0.02"}),
+            "--accuracy needs --for, one of front, front_99, height, profile, kinetic\n");
+  EXPECT_EQ(complaint({"--accuracy", "2", "--for", "front"}),
+            "--accuracy 2: the relative error must be a number in (0, 0.5]\n");
+  EXPECT_EQ(complaint({"--accuracy", "0.02", "--for", "front", "--budget", "-1"}),
+            "--budget -1: CPU seconds must be a number in (0, 1000000000]\n");
+  EXPECT_EQ(complaint({"--for", "front"}), "--for goes with --accuracy, which is missing\n");
+  EXPECT_EQ(complaint({"--accuracy", "0.02", "--for", "front", "--set", "grid.h=0.01"}),
+            "--set grid.h=0.01: --accuracy chooses grid.h itself\n");
+}
+
+TEST(AccuracyTable, EveryLawHasConstants) {
+  for (const char* name : {"flat_mu_i", "flat_newtonian", "flat_mcc"}) {
+    input::InputFile file =
+        input::InputFile::read(fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, name));
+    const mpm::Scene scene = input::read_scene(file).scene;
+    for (std::size_t q = 0; q < advised_names.size(); ++q) {
+      bool measured = false;
+      const auto candidates = candidates_for(scene, static_cast<Quantity>(q), measured);
+      EXPECT_TRUE(measured) << name;
+      ASSERT_FALSE(candidates.empty()) << name << " " << quantity_names[q];
+      for (const Candidate& c : candidates) {
+        EXPECT_GT(c.model.bias, 0.0);
+        EXPECT_GT(c.model.irregularity, 0.0);
+        EXPECT_GT(c.model.caution, 0.0);
+        EXPECT_GE(c.model.scatter, 1e-4);
+        mpm::Scene tried = scene_with(scene, c, scene.h, 2);
+        EXPECT_NO_THROW(mpm::validate(tried));
+        EXPECT_NEAR(tried.courant, 0.92 * c.courant, 1e-4);
+      }
+    }
+  }
+}
+
+TEST(AccuracyTable, SizesFitTheBoxAndTheBodies) {
+  input::InputFile file = input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml");
+  const mpm::Scene scene = input::read_scene(file).scene;
+  const std::vector<double> sizes = sizes_for(scene, 40000.0);
+  // the column is 0.2 m wide: 4 cells of 50 mm; 4 × 0.08 m²/h² ≤ 40 000 is h ≥ 2.83 mm
+  std::vector<double> expected;
+  for (const double h : {0.05, 0.025, 0.0125, 0.00625})
+    expected.insert(expected.end(), {h, 4.0 * h / 5.0, 2.0 * h / 3.0});
+  expected.push_back(0.003125);
+  EXPECT_EQ(sizes, expected);
+}
+
+/// A finished run with one figure.
+SweepRun run_with(double h, double courant, double front, double cpu) {
+  SweepRun run;
+  mpm::Scene& scene = run.file.scene;
+  scene.h = h;
+  scene.courant = courant;
+  scene.domain = {2.0, 1.0};
+  scene.end_time = 1.0;
+  scene.series_interval = 1.0;
+  scene.bodies.resize(1);
+  scene.bodies[0].size = {0.5, 0.5};
+  run.summary.status = "done";
+  run.summary.figures = {{"front_m", front}, {"height_m", 1.0}, {"cpu_s", cpu}};
+  run.series["kinetic_J_per_m"] = {0.0, 1.0 + h};
+  // a wedge whose volume does not depend on the cells
+  run.x_m = {0.0, 1.0, 2.0};
+  run.depth_m = {1.0, 0.5, 0.0};
+  return run;
+}
+
+TEST(SweepErrors, AreMeasuredFromTheExtrapolatedReference) {
+  std::vector<SweepRun> runs;
+  for (const double h : {0.2, 0.1, 0.05})
+    for (const double courant : {1.0, 0.8, 0.6})
+      runs.push_back(run_with(h, courant, 1.0 - h, 1.0 / h / courant));
+  const auto reference = reference_of(runs, runs[0].scene());
+  ASSERT_TRUE(reference);
+  EXPECT_EQ(reference->steps, 3u);
+  const double bin = common_bin(runs);
+  EXPECT_EQ(bin, 0.2);
+  const auto& front = reference->values[static_cast<std::size_t>(Quantity::front)];
+  ASSERT_TRUE(front);
+  EXPECT_NEAR(front->value[0], 1.0, 1e-9);
+  EXPECT_NEAR(front->observed, 1.0, 1e-9);
+  EXPECT_NEAR(error_of(runs[0], Quantity::front, *reference, bin), 0.2, 1e-9);
+  EXPECT_NEAR(error_of(runs[0], Quantity::profile, *reference, bin), 0.0, 1e-12);
+  EXPECT_NEAR(error_of(runs[8], Quantity::kinetic, *reference, bin), 0.05, 1e-9);
+  // the cheapest run of every size
+  const std::vector<bool> pareto = pareto_front(runs, Quantity::front, *reference);
+  EXPECT_EQ(std::count(pareto.begin(), pareto.end(), true), 3);
+  for (const std::size_t k : {0u, 3u, 6u}) EXPECT_TRUE(pareto[k]) << k;
+  runs.resize(6);
+  EXPECT_FALSE(reference_of(runs, runs[0].scene())) << "two sizes are none";
+}
+
+TEST(SweepErrors, ProfilesOfDifferentCellsHaveTheSameVolumes) {
+  SweepRun run = run_with(0.2, 1.0, 1.0, 1.0);
+  const Eigen::VectorXd shares = shares_of(run, Quantity::profile, 0.5);
+  ASSERT_EQ(shares.size(), 4);
+  EXPECT_NEAR(shares.sum(), 1.0, 1e-15) << "the wedge of 2 m by 1 m";
+  EXPECT_NEAR(shares[0], 0.5 * 0.875, 1e-15) << "between depths of 1 and 0.75 m";
+  const QuantityCurve curve = curve_of(shares, Quantity::profile, run.scene(), 0.5);
+  EXPECT_DOUBLE_EQ(curve.x[0], 0.25);
+  EXPECT_NEAR(curve.y[0], 0.875, 1e-15);
+}
+
+}  // namespace
+}  // namespace repose::study
