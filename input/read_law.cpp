@@ -1,8 +1,13 @@
 #include "input/read_law.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
+
+#include "input/key_info.hpp"
+#include "input/toml_text.hpp"
+#include "input/write_keys.hpp"
 
 namespace repose::input {
 namespace {
@@ -113,6 +118,90 @@ LawSpec read_law(TomlReader law) {
     if (parameter.need == Need::defaulted)
       spec.values.try_emplace(std::string(parameter.name), parameter.value);
   return spec;
+}
+
+std::string law_lines(const LawSpec& spec) {
+  const LawInfo& info = find_law(spec);
+  const std::vector<double> theta = checked_parameters(spec);
+  std::string out = key_line("name", toml_string(spec.name), info.doc);
+  if (!info.option_key.empty()) {
+    const bool boolean = info.option == "true" || info.option == "false";
+    out += key_line(info.option_key, boolean ? std::string(info.option) : toml_string(info.option));
+  }
+  for (std::size_t i = 0; i < theta.size(); ++i) {
+    const ParamInfo& parameter = info.parameters[i];
+    if (std::isnan(theta[i])) continue;
+    const bool derived =
+        parameter.need == Need::optional && !spec.values.contains(std::string(parameter.name));
+    out += key_line(fmt::format("{}{}", derived ? "# " : "", parameter.name), toml_number(theta[i]),
+                    fmt::format("{}{}", derived ? "derived: " : "",
+                                unit_and_doc(parameter.unit, parameter.doc)));
+  }
+  return out;
+}
+
+namespace {
+
+KeyInfo parameter_info(const ParamInfo& parameter, std::string_view law) {
+  KeyInfo info;
+  info.name = parameter.name;
+  info.unit = parameter.unit;
+  info.doc = fmt::format("{} {}", law, parameter.doc);
+  info.range = parameter.range;
+  if (parameter.need == Need::defaulted) info.fallback = toml_number(parameter.value);
+  return info;
+}
+
+/// One form per law: its options and the parameters of all its forms.
+std::vector<KeyInfo> law_forms() {
+  std::vector<KeyInfo> laws;
+  for (const LawInfo& form : all_laws()) {
+    auto law = std::find_if(laws.begin(), laws.end(),
+                            [&](const KeyInfo& l) { return l.name == form.name; });
+    if (law == laws.end()) {
+      law = laws.insert(laws.end(), KeyInfo{});
+      law->name = form.name;
+      law->kind = ValueKind::table;
+      law->doc = form.doc;
+    }
+    const auto find = [&](std::string_view name) {
+      const auto found = std::find_if(law->below.begin(), law->below.end(),
+                                      [&](const KeyInfo& k) { return k.name == name; });
+      return found == law->below.end() ? nullptr : &*found;
+    };
+    if (!form.option_key.empty()) {
+      KeyInfo* option = find(form.option_key);
+      if (option == nullptr) {
+        option = &law->below.emplace_back();
+        option->name = form.option_key;
+        const bool flag = form.option == "true" || form.option == "false";
+        option->kind = flag ? ValueKind::boolean : ValueKind::word;
+        option->doc = "form of the law";
+        option->required = default_form(form.name) == nullptr;
+        if (const LawInfo* usual = default_form(form.name))
+          option->fallback =
+              flag ? std::string(usual->option) : toml_string(std::string(usual->option));
+      }
+      option->words.emplace_back(form.option);
+    }
+    for (const ParamInfo& parameter : form.parameters)
+      if (find(parameter.name) == nullptr) law->below.push_back(parameter_info(parameter, ""));
+  }
+  return laws;
+}
+
+}  // namespace
+
+void law_keys(Keys& keys, LawSpec& spec) {
+  static const std::vector<KeyInfo> info = [] {
+    KeyInfo forms;
+    forms.name = "";  // the table itself is one of these
+    forms.kind = ValueKind::any_of;
+    forms.below = law_forms();
+    return std::vector<KeyInfo>{forms};
+  }();
+  keys.others([&](TomlReader& table) { spec = read_law(table); }, [&] { return law_lines(spec); },
+              info);
 }
 
 }  // namespace repose::input

@@ -2,6 +2,7 @@
 /// \file
 /// A [law] table: shared by scenes, point tests and fits.
 
+#include "input/keys.hpp"
 #include "input/toml_reader.hpp"
 #include "models/registry.hpp"
 
@@ -11,5 +12,12 @@ namespace repose::input {
 /// when they are absent (G = 4K) stay absent, so that they follow what they are derived from.
 /// Reports unknown keys, wrong types, ranges, missing parameters and conditions between them.
 LawSpec read_law(TomlReader law);
+
+/// The lines of a [law] table: every parameter with unit and meaning. Values that the law derives
+/// from others (G = 4K) stand in comments, so that they follow when the file is edited.
+std::string law_lines(const LawSpec& spec);
+
+/// A [law] table as keys: the parameters of every law, from the registry.
+void law_keys(Keys& keys, LawSpec& spec);
 
 }  // namespace repose::input

@@ -6,7 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "input/key_info.hpp"
+#include "input/read_initial.hpp"
+#include "input/read_keys.hpp"
 #include "input/read_law.hpp"
+#include "input/toml_text.hpp"
 
 namespace repose::input {
 namespace {
@@ -28,33 +32,44 @@ std::string default_name(const InputFile& file) {
   return fits_file_name(name) ? name : "scene";
 }
 
-void read_general(TomlReader table, mpm::Scene& scene) {
-  scene.name = table.text("name", "the result folder's name", default_name(table.file()));
-  if (!fits_file_name(scene.name))
-    table.report("name", fmt::format("scene.name = \"{}\" becomes part of file names: letters, "
-                                     "digits, '.', '_' and '-' only, no '.' in front",
-                                     scene.name));
-  scene.end_time = table.number({"end_time", "s", "how long to simulate", not_negative, {}});
-  scene.gravity = table.number({"gravity", "m/s²", "gravity", not_negative, scene.gravity});
-  scene.tilt_deg = table.number(
-      {"tilt_deg", "°", "tilt of the box", Range{-90.0, 90.0, false, false}, scene.tilt_deg});
+void general_keys(Keys& keys, mpm::Scene& scene) {
+  keys.text({"name", "-", "the result folder's name"}, scene.name);
+  keys.number({"end_time", "s", "how long to simulate", not_negative, required}, scene.end_time);
+  keys.number({"gravity", "m/s²", "gravity", not_negative}, scene.gravity);
+  keys.number({"tilt_deg", "°", "tilt of the box, towards +x", Range{-90.0, 90.0, false, false}},
+              scene.tilt_deg);
+  if (TomlReader* const table = keys.reader(); table != nullptr && !fits_file_name(scene.name))
+    table->report("name", fmt::format("scene.name = \"{}\" becomes part of file names: letters, "
+                                      "digits, '.', '_' and '-' only, no '.' in front",
+                                      scene.name));
+}
+
+constexpr std::array<std::string_view, 4> wall_words{"no_slip", "slip", "open", "periodic"};
+constexpr std::array wall_kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open,
+                                Wall::Kind::periodic};
+
+void friction_key(Keys& keys, double& friction) {
+  keys.number({"friction", "-", "Coulomb coefficient", not_negative, required}, friction);
+}
+
+void speed_key(Keys& keys, double& speed) {
+  keys.number({"speed", "m/s", "of the wall along itself", {}, required}, speed);
 }
 
 Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
-  if (const toml::node* node = table.get(key); node != nullptr && node->is_table()) {
-    TomlReader given = table.table(key);
-    if (given.has("speed"))
-      return {Wall::Kind::no_slip, 0.0,
-              given.number({"speed", "m/s", "of the wall along itself", {}, {}})};
-    Wall wall{Wall::Kind::friction};
-    wall.friction = given.number({"friction", "-", "Coulomb coefficient", not_negative, {}});
+  const toml::node& node = *table.get(key);
+  if (node.is_table()) {
+    const TomlReader given = table.table(key);
+    ReadKeys keys(given);
+    Wall wall{Wall::Kind::no_slip};
+    if (given.has("speed")) {
+      speed_key(keys, wall.speed);
+    } else {
+      wall.kind = Wall::Kind::friction;
+      friction_key(keys, wall.friction);
+    }
     return wall;
   }
-  constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open,
-                             Wall::Kind::periodic};
-  table.expect(key);
-  if (!table.has(key)) return fallback;
-  const toml::node& node = *table.get(key);
   if (const auto* word = node.as_string(); word != nullptr && word->get() == "friction") {
     table.report(key,
                  fmt::format("{} = \"friction\" needs a coefficient: {} = {{ friction = 0.4 }}",
@@ -69,141 +84,130 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
                              table.path_of(key), describe(node)));
     return fallback;
   }
-  return {kinds[table.choice(key, {"no_slip", "slip", "open", "periodic"}, 0)]};
+  return {wall_kinds[table.choice(key, {wall_words.begin(), wall_words.end()}, 0)]};
 }
 
-void read_domain(TomlReader table, mpm::Scene& scene) {
-  const toml::node* const size = table.get("size");
-  const bool space = size != nullptr && size->is_array() && size->as_array()->size() == 3;
-  scene.domain =
-      table.vector({"size",
-                    "m",
-                    space ? "width, height and depth of the box" : "width and height of the box",
-                    positive,
-                    {}},
-                   space ? 3 : 2);
+std::string wall_text(const Wall& wall) {
+  if (wall.kind == Wall::Kind::friction)
+    return fmt::format("{{ friction = {} }}", toml_number(wall.friction));
+  if (wall.speed != 0.0) return fmt::format("{{ speed = {} }}", toml_number(wall.speed));
+  const auto at = std::find(wall_kinds.begin(), wall_kinds.end(), wall.kind) - wall_kinds.begin();
+  return toml_string(wall_words[static_cast<std::size_t>(at)]);
+}
+
+const KeyInfo& wall_info() {
+  static const KeyInfo info = [] {
+    KeyInfo any, word, friction, speed;
+    any.kind = ValueKind::any_of;
+    word.kind = ValueKind::word;
+    word.words.assign(wall_words.begin(), wall_words.end());
+    friction.kind = speed.kind = ValueKind::table;
+    double x = 0.0;
+    friction.below = describe_keys([&](Keys& keys) { friction_key(keys, x); });
+    speed.below = describe_keys([&](Keys& keys) { speed_key(keys, x); });
+    any.below = {word, friction, speed};
+    return any;
+  }();
+  return info;
+}
+
+void wall_key(Keys& keys, std::string_view name, std::string_view doc, Wall& wall) {
+  keys.value(
+      {name, "-", doc}, [&](TomlReader& table) { wall = read_wall(table, name, wall); },
+      [&] { return wall_text(wall); }, wall_info());
+}
+
+void domain_keys(Keys& keys, mpm::Scene& scene) {
+  std::size_t axes = scene.dimensions();
+  if (const TomlReader* const table = keys.reader()) {
+    const toml::node* const size = table->get("size");
+    axes = size != nullptr && size->is_array() && size->as_array()->size() == 3 ? 3 : 2;
+  }
+  const Key size{"size", "m", "width and height of the box, in space also its depth", positive,
+                 required};
+  keys.vector(size, axes, scene.domain);
+  if (keys.describes()) keys.vector(size, 3, scene.domain);
   if (std::isnan(scene.domain[2])) scene.domain[2] = 1.0;  // reported; still a scene in space
-  scene.floor = read_wall(table, "floor", scene.floor);
-  const Wall walls = read_wall(table, "walls", scene.left);
-  scene.left = read_wall(table, "left", walls);
-  scene.right = read_wall(table, "right", walls);
-  // periodic walls are those across the flow; the top is then left as it is by default
-  scene.top = read_wall(table, "top", walls.kind == Wall::Kind::periodic ? scene.top : walls);
-  if (scene.dimensions() == 3) {
-    scene.near = read_wall(table, "near", walls);
-    scene.far = read_wall(table, "far", walls);
-  }
+  wall_key(keys, "floor", "lower edge", scene.floor);
+  keys.value(
+      {"walls", "-", "every other edge that is not given itself"},
+      [&](TomlReader& table) {
+        const Wall walls = read_wall(table, "walls", scene.left);
+        scene.left = scene.right = scene.near = scene.far = walls;
+        // periodic walls are those across the flow; the top is then left as it is
+        if (walls.kind != Wall::Kind::periodic) scene.top = walls;
+      },
+      [] { return std::string(); }, wall_info());
+  wall_key(keys, "left", "edge at x = 0", scene.left);
+  wall_key(keys, "right", "edge at the other end of x", scene.right);
+  wall_key(keys, "top", "upper edge", scene.top);
+  if (axes == 2 && !keys.describes()) return;
+  wall_key(keys, "near", "in space: edge at z = 0", scene.near);
+  wall_key(keys, "far", "in space: edge at the other end of z", scene.far);
 }
 
-void read_initial(TomlReader table, mpm::Body& body) {
-  InitialConditions& initial = body.initial;
-  initial.p = table.optional_number({"p", "Pa", "mean pressure", {}, {}});
-  initial.ocr = table.optional_number(
-      {"ocr", "-", "overconsolidation ratio p_c/p", Range{1.0, positive.upper, false, true}, {}});
-  initial.v = table.optional_number({"v", "-", "specific volume", Range{1.0, positive.upper}, {}});
-  initial.density = table.optional_number({"density", "kg/m³", "density", positive, {}});
-  initial.K0 =
-      table.optional_number({"K0", "-", "ratio of horizontal to vertical stress", positive, {}});
-  if (const auto sigma = table.numbers(
-          {"sigma", "Pa", "xx, yy, zz, xy, yz, zx, compression positive", {}, {}}, 6)) {
-    initial.sigma.emplace();
-    std::copy(sigma->begin(), sigma->end(), initial.sigma->begin());
-  }
-  body.lithostatic = table.boolean("lithostatic", false);
+void body_initial_keys(Keys& keys, mpm::Body& body) {
+  initial_keys(keys, body.initial);
+  keys.boolean({"lithostatic", "-", "p grows with depth below the body's top; K0 and ocr apply"},
+               body.lithostatic);
 }
 
-mpm::Body read_body(TomlReader table, std::size_t position, std::size_t axes) {
-  mpm::Body body;
-  body.name = table.text("name", "a name for messages", fmt::format("body{}", position));
+void disc_keys(Keys& keys, mpm::Body& body, bool space) {
+  mpm::Disc disc = body.disc.value_or(mpm::Disc{});
+  double base = body.origin[1], height = body.size[1];
+  keys.pair({"centre", "m", "of the disc; x and z of a cylinder's axis", {}, required},
+            disc.centre);
+  keys.number({"radius", "m", "of the disc or cylinder", positive, required}, disc.radius);
+  keys.number({"hole", "m", "radius of the hole", not_negative}, disc.hole);
+  if (space || keys.describes()) {
+    keys.number({"base", "m", "y of the cylinder's base"}, base);
+    keys.number({"height", "m", "of the cylinder", positive, required}, height);
+  }
+  if (keys.reader() == nullptr) return;
+  if (space)
+    set_cylinder(body, disc, base, height);
+  else
+    set_disc(body, disc);
+}
+
+void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
+  static constexpr std::array<std::string_view, 2> in_plane{"box", "disc"},
+      in_space{"box", "cylinder"};
+  static constexpr std::array<std::string_view, 3> all{"box", "disc", "cylinder"};
   const bool space = axes == 3;
-  if (table.choice("shape", {"box", space ? "cylinder" : "disc"}, 0) == 0) {
-    body.origin =
-        table.vector({"origin", "m", "lower left corner", {}, {}}, axes, std::array{0.0, 0.0, 0.0});
-    body.size = table.vector(
-        {"size", "m", space ? "width, height and depth" : "width and height", positive, {}}, axes);
-  } else {
-    mpm::Disc disc;
-    disc.centre = table.pair(
-        {"centre", "m", space ? "x and z of the cylinder's axis" : "of the disc", {}, {}});
-    disc.radius =
-        table.number({"radius", "m", space ? "of the cylinder" : "of the disc", positive, {}});
-    disc.hole = table.number({"hole", "m", "radius of the hole", not_negative, 0.0});
-    if (space) {
-      const double base = table.number({"base", "m", "y of the cylinder's base", {}, 0.0});
-      set_cylinder(body, disc, base,
-                   table.number({"height", "m", "of the cylinder", positive, {}}));
-    } else {
-      set_disc(body, disc);
-    }
+  keys.text({"name", "-", "for messages"}, body.name);
+  std::size_t shape = body.disc ? 1 : 0;
+  keys.word({"shape", "-", "of the body"},
+            keys.describes() ? std::span<const std::string_view>(all)
+            : space          ? std::span<const std::string_view>(in_space)
+                             : std::span<const std::string_view>(in_plane),
+            shape);
+  if (shape == 0 || keys.describes()) {
+    keys.vector({"origin", "m", "lower left corner of a box"}, axes, body.origin);
+    keys.vector({"size", "m", "width, height and in space depth of a box", positive, required},
+                axes, body.size);
   }
-  body.velocity = table.vector({"velocity", "m/s", "initial velocity", {}, {}}, axes,
-                               std::array{0.0, 0.0, 0.0});
-  body.spin = table.number({"spin", "rad/s", "initial angular velocity", {}, 0.0});
-  read_initial(table.table("initial"), body);
-  body.law = read_law(table.table("law"));
-  return body;
+  if (shape != 0 || keys.describes()) disc_keys(keys, body, space);
+  keys.vector({"velocity", "m/s", "at the start"}, axes, body.velocity);
+  keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
+  keys.table({"initial", "-", "the state at the start"},
+             [&](Keys& below) { body_initial_keys(below, body); });
+  keys.table({"law", "-", "the constitutive law", {}, required},
+             [&](Keys& below) { law_keys(below, body.law); });
 }
 
-void read_grid(TomlReader table, mpm::Scene& scene) {
-  scene.h = table.number({"h", "m", "cell size", positive, {}});
-  const bool space = scene.dimensions() == 3;
-  if (space) scene.points_per_cell = 8;
-  scene.points_per_cell = static_cast<int>(table.integer(
-      "points_per_cell", space ? "a cube number: 1, 8, 27" : "a square number: 1, 4, 9, 16", 1, 100,
-      scene.points_per_cell));
-  scene.kernel = static_cast<mpm::Kernel>(
-      table.choice("kernel", {mpm::kernel_names.begin(), mpm::kernel_names.end()},
-                   static_cast<std::size_t>(scene.kernel)));
+void grid_keys(Keys& keys, mpm::Scene& scene) {
+  keys.number({"h", "m", "cell size", positive, required}, scene.h);
+  if (keys.reader() != nullptr && scene.dimensions() == 3) scene.points_per_cell = 8;
+  keys.integer({"points_per_cell", "-", "a square number: 1, 4, 9, 16; in space a cube: 1, 8, 27"},
+               {1, 100}, scene.points_per_cell);
+  keys.choice({"kernel", "-", "spline of the grid"}, mpm::kernel_names, scene.kernel);
 }
 
-void read_step(TomlReader table, mpm::Scene& scene) {
-  // without gravity there is no time from which a relaxation time could follow
-  if (scene.gravity == 0.0) scene.transfer = mpm::Transfer::apic;
-  scene.transfer = static_cast<mpm::Transfer>(
-      table.choice("transfer", {mpm::transfer_names.begin(), mpm::transfer_names.end()},
-                   static_cast<std::size_t>(scene.transfer)));
-  scene.relaxation_time = table.optional_number(
-      {"relaxation_time", "s", "of the points' own velocity towards the grid's", positive, {}});
-  const bool relaxed = scene.transfer == mpm::Transfer::relaxed;
-  if (relaxed && !scene.relaxation_time && scene.gravity == 0.0)
-    table.report("transfer", "without gravity, relaxed needs step.relaxation_time [s]");
-  if (!relaxed && scene.relaxation_time)
-    table.report("relaxation_time", "only step.transfer = \"relaxed\" has a relaxation time");
-  const bool has_order =
-      scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm;
-  if (!has_order && table.has("order"))
-    table.report("order", "only step.transfer = \"xpic\" and \"fmpm\" have an order");
-  scene.order = static_cast<int>(table.integer("order", "1 is pic", 1, 100, scene.order));
-  scene.pressure_averaging =
-      table.number({"pressure_averaging", "-", "of neighbouring points, per unit of shear strain",
-                    not_negative, scene.pressure_averaging});
-  scene.viscosity = static_cast<mpm::Viscosity>(
-      table.choice("viscosity", {mpm::viscosity_names.begin(), mpm::viscosity_names.end()},
-                   static_cast<std::size_t>(scene.viscosity)));
-  const auto tolerance =
-      table.optional_number({"viscosity_tolerance",
-                             "-",
-                             "error of an implicit step's velocity over what its forces bring",
-                             Range{0.0, 0.1, true, false},
-                             {}});
-  if (tolerance && scene.viscosity != mpm::Viscosity::implicit_solve)
-    table.report("viscosity_tolerance", "only step.viscosity = \"implicit\" has a tolerance");
-  scene.viscosity_tolerance = tolerance.value_or(scene.viscosity_tolerance);
-  scene.sleep_speed = table.number({"sleep_speed", "m/s",
-                                    "blocks whose points are slower come to sleep, 0 for none",
-                                    not_negative, scene.sleep_speed});
-  scene.storage = static_cast<mpm::Storage>(
-      table.choice("storage", {mpm::storage_names.begin(), mpm::storage_names.end()},
-                   static_cast<std::size_t>(scene.storage)));
-  // A fluid's point alone, and the bulk of all, lose √(2/3) of their step with the third direction
-  // (step_size.hpp).
-  if (scene.dimensions() == 3) scene.courant = 0.65;
-  const double default_courant = scene.courant;
-  scene.courant =
-      table.number({"courant", "-", "share of the stable step", mpm::courant_range, scene.courant});
-  scene.dt = table.optional_number({"dt", "s", "fixed step", positive, {}});
+/// An override replaces the file's choice between a Courant number and a fixed step; within one
+/// place the two contradict each other.
+void choose_step(TomlReader& table, mpm::Scene& scene, double default_courant) {
   if (!table.has("courant") || !table.has("dt")) return;
-  // An override replaces the file's choice; within one place the two contradict each other.
   const bool courant_set = table.file().origin(table.path_of("courant")).is_override();
   const bool dt_set = table.file().origin(table.path_of("dt")).is_override();
   if (courant_set == dt_set)
@@ -214,30 +218,88 @@ void read_step(TomlReader table, mpm::Scene& scene) {
     scene.courant = default_courant;
 }
 
-PictureField read_output(TomlReader table, mpm::Scene& scene) {
-  scene.frame_interval = table.number({"frame_interval", "s", "time between frames, 0 for none",
-                                       not_negative, scene.frame_interval});
-  scene.series_interval =
-      table.number({"series_interval", "s", "time between rows of series.csv, 0 for two rows only",
-                    not_negative, scene.series_interval});
-  return table.choice("colour", {"mises", "density"}, 0) == 0 ? PictureField::mises
-                                                              : PictureField::density;
+void step_keys(Keys& keys, mpm::Scene& scene) {
+  TomlReader* const table = keys.reader();
+  // without gravity there is no time from which a relaxation time could follow
+  if (table != nullptr && scene.gravity == 0.0) scene.transfer = mpm::Transfer::apic;
+  keys.choice({"transfer", "-", "of velocities between points and grid"}, mpm::transfer_names,
+              scene.transfer);
+  const bool relaxed = scene.transfer == mpm::Transfer::relaxed;
+  const bool has_order =
+      scene.transfer == mpm::Transfer::xpic || scene.transfer == mpm::Transfer::fmpm;
+  // left out where it follows from h, so that it goes on following in a chart over h
+  keys.number(Key{"relaxation_time", "s",
+                  "of the points' own velocity towards the grid's; 0.03 √(h/g)", positive}
+                  .only_if(relaxed, "only step.transfer = \"relaxed\" has a relaxation time"),
+              scene.relaxation_time);
+  if (table != nullptr && relaxed && !scene.relaxation_time && scene.gravity == 0.0)
+    table->report("transfer", "without gravity, relaxed needs step.relaxation_time [s]");
+  keys.integer(Key{"order", "-", "of the transfer, 1 is pic"}.only_if(
+                   has_order, "only step.transfer = \"xpic\" and \"fmpm\" have an order"),
+               {1, 100}, scene.order);
+  keys.number({"pressure_averaging", "-",
+               "of neighbouring points, per unit of shear strain; 0 for none", not_negative},
+              scene.pressure_averaging);
+  keys.number({"sleep_speed", "m/s", "blocks whose points are slower come to sleep; 0: none does",
+               not_negative},
+              scene.sleep_speed);
+  keys.choice({"storage", "-", "of points between steps"}, mpm::storage_names, scene.storage);
+  keys.choice({"viscosity", "-", "how viscous stress acts"}, mpm::viscosity_names, scene.viscosity);
+  keys.number(Key{"viscosity_tolerance", "-",
+                  "error of an implicit step's velocity over what its forces bring",
+                  Range{0.0, 0.1, true, false}}
+                  .only_if(scene.viscosity == mpm::Viscosity::implicit_solve,
+                           "only step.viscosity = \"implicit\" has a tolerance"),
+              scene.viscosity_tolerance);
+  // A fluid's point alone, and the bulk of all, lose √(2/3) of their step with the third direction
+  // (step_size.hpp).
+  if (table != nullptr && scene.dimensions() == 3) scene.courant = 0.65;
+  const double default_courant = scene.courant;
+  if (table != nullptr || keys.describes() || !scene.dt)
+    keys.number({"courant", "-", "share of the largest stable step", mpm::courant_range},
+                scene.courant);
+  keys.number({"dt", "s", "fixed step, in place of courant", positive}, scene.dt);
+  if (table != nullptr) choose_step(*table, scene, default_courant);
+}
+
+void output_keys(Keys& keys, SceneFile& file) {
+  keys.number({"frame_interval", "s", "time between frames, 0 for none", not_negative},
+              file.scene.frame_interval);
+  keys.number({"series_interval", "s", "time between rows of series.csv, 0 for two rows only",
+               not_negative},
+              file.scene.series_interval);
+  keys.choice({"colour", "-", "of final.svg"}, picture_field_names, file.colour);
 }
 
 }  // namespace
+
+void scene_keys(Keys& keys, SceneFile& file) {
+  mpm::Scene& scene = file.scene;
+  keys.table({"scene", "-", "what is simulated", {}, required},
+             [&](Keys& below) { general_keys(below, scene); });
+  keys.table({"domain", "-", "the box and its edges", {}, required},
+             [&](Keys& below) { domain_keys(below, scene); });
+  keys.tables(
+      {"body", "-", "a block of material", {}, required}, scene.bodies.size(),
+      [&](std::size_t count) {
+        for (std::size_t i = scene.bodies.size(); i < count; ++i)
+          scene.bodies.emplace_back().name = fmt::format("body{}", i);
+      },
+      [&](Keys& below, std::size_t i) { body_keys(below, scene.bodies[i], scene.dimensions()); });
+  keys.table({"grid", "-", "cells and points", {}, required},
+             [&](Keys& below) { grid_keys(below, scene); });
+  keys.table({"step", "-", "how a step is made"}, [&](Keys& below) { step_keys(below, scene); });
+  keys.table({"output", "-", "what is written"}, [&](Keys& below) { output_keys(below, file); });
+}
 
 SceneFile read_scene(InputFile& file) {
   SceneFile result;
   mpm::Scene& scene = result.scene;
   TomlReader root(file);
   root.expect("chart");  // read_chart.hpp
-  read_general(root.table("scene"), scene);
-  read_domain(root.table("domain"), scene);
-  for (const TomlReader& table : root.tables("body", "a block of material"))
-    scene.bodies.push_back(read_body(table, scene.bodies.size(), scene.dimensions()));
-  read_grid(root.table("grid"), scene);
-  read_step(root.table("step"), scene);
-  result.colour = read_output(root.table("output"), scene);
+  scene.name = default_name(file);
+  ReadKeys keys(root);
+  scene_keys(keys, result);
   if (file.ok()) {
     const double height = scene.domain[1];
     if (mpm::raise_top_to_cells(scene))

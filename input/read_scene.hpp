@@ -3,18 +3,23 @@
 /// A scene file: what the simulation needs and what the command makes of its results.
 
 #include "input/input_file.hpp"
+#include "input/keys.hpp"
 #include "mpm/scene/scene.hpp"
 
 namespace repose::input {
 
 /// What colours the points of final.svg.
 enum class PictureField { mises, density };
+constexpr std::array<std::string_view, 2> picture_field_names{"mises", "density"};
 
 struct SceneFile {
   mpm::Scene scene;
   PictureField colour = PictureField::mises;
   std::vector<std::string> notes;  ///< what was made of the input that the user may not expect
 };
+
+/// Every key of a scene file but [chart] (read_chart.hpp).
+void scene_keys(Keys& keys, SceneFile& file);
 
 /// Reads and validates a scene. Throws BadInput with everything that is wrong.
 SceneFile read_scene(InputFile& file);

@@ -187,14 +187,16 @@ TEST(ReadSceneErrors, wrong_types) {
   EXPECT_EQ(problems(replaced(granular, "K = 254800", "K = true")),
             "s.toml:15:1: body[0].law.K must be a number > 0 Pa (bulk modulus); got true");
   EXPECT_EQ(problems(replaced(granular, "[0.2, 0.4]", "0.2")),
-            "s.toml:6:1: body[0].size must be a list of 2 numbers in m (width and height); got the "
+            "s.toml:6:1: body[0].size must be a list of 2 numbers in m (width, height and in space "
+            "depth of a box); got the "
             "number 0.2");
   EXPECT_EQ(problems(replaced(granular, "[0.2, 0.4]", "[0.2, \"b\"]")),
-            "s.toml:6:14: body[0].size[1] must be a number > 0 m (width and height); got the "
+            "s.toml:6:14: body[0].size[1] must be a number > 0 m (width, height and in space depth "
+            "of a box); got the "
             "string \"b\"");
   EXPECT_EQ(problems(granular + "points_per_cell = 4.5\n"),
             "s.toml:18:1: grid.points_per_cell must be an integer from 1 to 100 (a square number: "
-            "1, 4, 9, 16); got the number 4.5");
+            "1, 4, 9, 16; in space a cube: 1, 8, 27); got the number 4.5");
   EXPECT_EQ(problems(granular + "kernel = \"qubic\"\n"),
             "s.toml:18:1: grid.kernel must be one of \"quadratic\", \"cubic\"; got the string "
             "\"qubic\"; did you mean \"cubic\"?");
@@ -277,9 +279,10 @@ TEST(ReadSceneErrors, order_belongs_to_xpic_and_fmpm) {
   EXPECT_EQ(problems(granular + "[step]\ntransfer = \"fmpm\"\n"), "");
   EXPECT_EQ(problems(granular + "[step]\norder = 2\n"),
             "s.toml:19:1: only step.transfer = \"xpic\" and \"fmpm\" have an order");
-  EXPECT_EQ(problems(granular + "[step]\ntransfer = \"xpic\"\norder = 0\n"),
-            "s.toml:20:1: step.order must be an integer from 1 to 100 (1 is pic); got "
-            "the integer 0");
+  EXPECT_EQ(
+      problems(granular + "[step]\ntransfer = \"xpic\"\norder = 0\n"),
+      "s.toml:20:1: step.order must be an integer from 1 to 100 (of the transfer, 1 is pic); got "
+      "the integer 0");
 }
 
 TEST(ReadSceneErrors, implicit_viscosity_needs_a_viscosity_and_walls_it_can_hold) {
@@ -314,9 +317,10 @@ TEST(ReadSceneErrors, implicit_viscosity_needs_a_viscosity_and_walls_it_can_hold
 TEST(ReadSceneErrors, courant_or_dt) {
   EXPECT_EQ(problems(granular + "[step]\ncourant = 0.3\ndt = 1e-5\n"),
             "s.toml:20:1: give either step.courant or step.dt: a fixed step leaves no choice");
-  EXPECT_EQ(problems(granular + "[step]\ncourant = 1.5\n"),
-            "s.toml:19:1: step.courant = 1.5 is out of range: share of the stable step must be a "
-            "number in (0, 1.4]");
+  EXPECT_EQ(
+      problems(granular + "[step]\ncourant = 1.5\n"),
+      "s.toml:19:1: step.courant = 1.5 is out of range: share of the largest stable step must be a "
+      "number in (0, 1.4]");
 }
 
 TEST(Overrides, replace_and_add_keys) {
