@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include "input/doubts.hpp"
 #include "input/read_law.hpp"
+#include "input/read_point_test.hpp"
 
 namespace repose::input {
 namespace {
@@ -96,19 +98,7 @@ void read_domain(TomlReader table, mpm::Scene& scene) {
 }
 
 void read_initial(TomlReader table, mpm::Body& body) {
-  InitialConditions& initial = body.initial;
-  initial.p = table.optional_number({"p", "Pa", "mean pressure", {}, {}});
-  initial.ocr = table.optional_number(
-      {"ocr", "-", "overconsolidation ratio p_c/p", Range{1.0, positive.upper, false, true}, {}});
-  initial.v = table.optional_number({"v", "-", "specific volume", Range{1.0, positive.upper}, {}});
-  initial.density = table.optional_number({"density", "kg/m³", "density", positive, {}});
-  initial.K0 =
-      table.optional_number({"K0", "-", "ratio of horizontal to vertical stress", positive, {}});
-  if (const auto sigma = table.numbers(
-          {"sigma", "Pa", "xx, yy, zz, xy, yz, zx, compression positive", {}, {}}, 6)) {
-    initial.sigma.emplace();
-    std::copy(sigma->begin(), sigma->end(), initial.sigma->begin());
-  }
+  body.initial = read_initial_conditions(table);
   body.lithostatic = table.boolean("lithostatic", false);
 }
 
@@ -252,6 +242,11 @@ SceneFile read_scene(InputFile& file) {
     }
   }
   file.throw_if_bad();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const LawSpec& law = scene.bodies[i].law;
+    for (const std::string& doubt : doubts(find_law(law), checked_parameters(law), {}))
+      result.notes.push_back(fmt::format("body[{}].{}", i, doubt));
+  }
   return result;
 }
 

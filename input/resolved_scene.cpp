@@ -89,7 +89,10 @@ std::string initial_table(const mpm::Body& body) {
     if (x) out += line(key, number(*x), comment);
   };
   add("p", initial.p, "Pa");
+  add("sigma_v", initial.sigma_v, "Pa, vertical");
   add("ocr", initial.ocr, "p_c/p");
+  add("ocr_v", initial.ocr_v, "of vertical stresses");
+  add("K0_nc", initial.K0_nc, "K0 at the greatest vertical stress");
   add("v", initial.v, "specific volume");
   add("density", initial.density, "kg/m³");
   add("K0", initial.K0, "horizontal over vertical stress");
