@@ -321,8 +321,10 @@ class AccurateRun {
                                           "about {} off.",
                                           study::name_of(quantity_), percent(alone))));
     try {
-      report::accuracy_picture(runs_, quantity_, so_far, estimate, request_.target, sizes_.front())
-          .render_svg(folder.file("accuracy.svg"));
+      if (request_.picture)
+        report::accuracy_picture(runs_, quantity_, so_far, estimate, request_.target,
+                                 sizes_.front())
+            .render_svg(folder.file("accuracy.svg"));
     } catch (const report::PlotError& error) {
       warnings_.push_back(fmt::format("accuracy.svg could not be drawn: {}", error.what()));
     }

@@ -22,6 +22,7 @@ struct AccuracyRequest {
   std::uint64_t seed = 0;        ///< recorded
   bool resume = false;           ///< continue an interrupted run from its checkpoint
   bool quiet = false, json = false;
+  bool picture = true;  ///< draw accuracy.svg
 };
 
 /// Writes input.toml, accuracy.csv (every run), estimate.csv (the quantity with its error bar),

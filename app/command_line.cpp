@@ -214,12 +214,17 @@ void add_quiet(Verb& verb, CommonOptions& options) {
   verb.flag("--json", options.json, "Print JSON instead of text");
 }
 
+void add_no_plot(Verb& verb, CommonOptions& options) {
+  verb.flag("--no-plot", options.no_plot, "Draw no picture");
+}
+
 void add_run_options(Verb& verb, CommonOptions& options) {
   verb.option("-o,--output", options.output, "Result folder (default: results/NAME)", "DIR");
   add_set(verb, options);
   add_threads(verb, options);
   verb.count("--seed", options.seed, "Seed of random numbers, recorded with the result", "N");
   verb.flag("--resume", options.resume, "Continue from the checkpoint in the result folder");
+  add_no_plot(verb, options);
   add_quiet(verb, options);
 }
 

@@ -86,7 +86,9 @@ point::Outcome drive(const InitialConditions& fixed, std::span<const double> inp
   if (!point::suits(test.path, stress)) return outcome;
   thread_local point::BasicCurve<D> curve;
   outcome = point::drive_path<L, D>(start, test.path, test.settings, curve);
-  const point::Readout<D> readout = point::make_readout(start, test.path.frame);
+  point::Readout<D> readout = point::make_readout(start, test.path.frame);
+  readout.measure = test.path.measure;
+  point::set_pore_pressure_datum(curve.rows, test.path.first_undrained, readout);
   const auto rows = static_cast<Index>(curve.rows.size());
   legs.clear();
   for (const auto& row : curve.rows) legs.push_back(row.leg);

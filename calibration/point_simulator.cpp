@@ -1,11 +1,13 @@
 #include "calibration/point_simulator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include "calibration/path_derivatives.hpp"
+#include "models/registry.hpp"
 
 namespace repose::calibration {
 namespace {
@@ -51,6 +53,20 @@ std::string_view word(Status status) {
   return "unknown";
 }
 
+bool is_stress(Quantity q) {
+  return q == Quantity::p || q == Quantity::q || q == Quantity::eta || q == Quantity::sigma_a ||
+         q == Quantity::sigma_r || q == Quantity::tau;
+}
+
+/// x before the first leg; nullopt where that depends on what is fitted. Errors: InputError.
+std::optional<double> x_at_start(const PointExperiment& e) {
+  if (!is_stress(e.x)) return 0.0;
+  if (e.start_moves) return std::nullopt;
+  std::vector<double> theta = e.theta;
+  complete_parameters(*e.law, theta);
+  return point::start_value(*e.law, theta, e.test, e.x);
+}
+
 class PointSimulator final : public Simulator {
  public:
   explicit PointSimulator(PointExperiment experiment) : e_(std::move(experiment)) {
@@ -69,7 +85,7 @@ class PointSimulator final : public Simulator {
         settings.method == point::Method::adaptive || settings.method == point::Method::implicit;
     if (e_.rows == Rows::at_data)
       e_.test.path =
-          split_at(e_.test.path, e_.x, x_at_start(), e_.abscissae, e_.lines, leg_of_row_);
+          split_at(e_.test.path, e_.x, x_at_start(e_), e_.abscissae, e_.lines, leg_of_row_);
     if (e_.rows == Rows::leg_ends)
       for (std::size_t i = 0; i < e_.test.path.legs.size(); ++i)
         leg_of_row_.push_back(static_cast<int>(i));
@@ -113,20 +129,6 @@ class PointSimulator final : public Simulator {
     std::vector<double> values;
   };
 
-  double x_at_start() const {
-    const InitialConditions& given = e_.test.initial;
-    switch (e_.x) {
-      case Quantity::p:
-      case Quantity::sigma_a:
-      case Quantity::sigma_r:
-        if (given.p && !given.K0) return *given.p;
-        if (given.sigma && e_.x == Quantity::sigma_a) return (*given.sigma)[1];
-        return e_.abscissae.empty() ? 0.0 : e_.abscissae.front();
-      default:
-        return 0.0;
-    }
-  }
-
   void fill(const point::Outcome& outcome, const Scratch& scratch, Index wanted,
             Response& r) const {
     const bool complete = outcome.status == Status::completed;
@@ -147,12 +149,12 @@ class PointSimulator final : public Simulator {
     if (e_.rows == Rows::along) {
       for (Index i = 0; i < rows; ++i) picked.push_back(i);
     } else if (all > 0 && outcome.status != Status::bad_initial) {
-      std::size_t row = 0;
+      const auto& legs = scratch.legs;  // of each row, ascending
       for (const int leg : leg_of_row_) {
         if (!complete && leg >= outcome.leg) break;
-        while (row + 1 < scratch.legs.size() && scratch.legs[row + 1] <= leg) ++row;
         // the start (leg −1) is row 0, which carries leg 0 like the end of leg 0
-        picked.push_back(leg < 0 ? 0 : static_cast<Index>(row));
+        const auto after = std::upper_bound(legs.begin(), legs.end(), leg);
+        picked.push_back(leg < 0 ? 0 : static_cast<Index>(after - legs.begin()) - 1);
       }
     }
     const auto n = static_cast<Index>(picked.size());
@@ -200,56 +202,178 @@ bool leads_along(const point::Path& path, Quantity x) {
   return true;
 }
 
-point::Path split_at(const point::Path& path, Quantity x, double x_start,
-                     std::span<const double> abscissae, std::span<const int> lines,
-                     std::vector<int>& leg_of_row) {
-  point::Path split = path;
-  split.legs.clear();
-  leg_of_row.clear();
-  double size = std::abs(x_start);
-  for (const double value : abscissae) size = std::max(size, std::abs(value));
-  const double tolerance = 1e-9 * size;
-  double now = x_start;
-  std::size_t next = 0;
-  int previous_leg = -1;
-  const auto go_to = [&](const point::LegSpec& stage, double value) {
-    if (std::abs(value - now) <= tolerance) return;
+namespace {
+
+/// Splits the stages of a path one by one at the rows of a table.
+class Splitter {
+ public:
+  Splitter(const point::Path& path, std::optional<double> x_start, std::span<const double> x,
+           std::vector<int>& leg_of_row)
+      : path_(path),
+        x_(x),
+        leg_of_row_(leg_of_row),
+        split_(path) {
+    split_.legs.clear();
+    if (path.undrained && path.first_undrained > 0)  // unless the rows lead that far
+      split_.first_undrained = std::numeric_limits<int>::max();
+    leg_of_row.assign(x.size(), -1);
+    double size = std::abs(x_start.value_or(0.0)), low = x_start.value_or(x[0]), high = low;
+    for (const double value : x) {
+      size = std::max(size, std::abs(value));
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    tolerance_ = 1e-9 * size;
+    scatter_ = 0.01 * (high - low);
+    now_ = stage_start_ = x_start.value_or(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  /// The number of rows that the stages pass.
+  std::size_t run() {
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < path_.legs.size() && next < x_.size(); ++i) {
+      if (static_cast<int>(i) == path_.first_undrained)
+        split_.first_undrained = static_cast<int>(split_.legs.size());
+      const point::LegSpec& stage = path_.legs[i].spec();
+      if (!stage.continues) stage_start_ = now_;
+      const double end = stage.goal->value + (stage.goal->of_stage ? stage_start_ : 0.0);
+      const double from = std::isnan(now_) ? x_[next] : now_;
+      const double towards = end >= from ? 1.0 : -1.0;
+      const std::size_t first = next;
+      next = last_of_stage(i, next, from, end, towards);
+      fresh_ = !stage.continues;
+      visit(stage, first, next, from, towards);
+      if (next < x_.size()) go_to(stage, end);
+    }
+    return next;
+  }
+
+  point::Path take() { return std::move(split_); }
+
+ private:
+  /// One past the last of the rows from `next` on that belong to stage i.
+  std::size_t last_of_stage(std::size_t i, std::size_t next, double from, double end,
+                            double towards) const {
+    double furthest = from;
+    const bool another = i + 1 < path_.legs.size();
+    for (; next < x_.size(); ++next) {
+      const double back = towards * (furthest - x_[next]);
+      if (towards * (end - x_[next]) < -tolerance_) break;
+      if (back > tolerance_ && (back > scatter_ || (another && !goes_on(next, furthest, towards))))
+        break;
+      furthest = towards * std::max(towards * furthest, towards * x_[next]);
+    }
+    return next;
+  }
+
+  /// Do the rows after this one, which steps back, pass the furthest so far again before they fall
+  /// behind it for good?
+  bool goes_on(std::size_t row, double furthest, double towards) const {
+    for (std::size_t k = row + 1; k < x_.size(); ++k) {
+      const double ahead = towards * (x_[k] - furthest);
+      if (ahead >= -tolerance_) return true;
+      if (ahead < -scatter_) return false;
+    }
+    return false;
+  }
+
+  void visit(const point::LegSpec& stage, std::size_t first, std::size_t last, double from,
+             double towards) {
+    std::vector<std::size_t> order;
+    for (std::size_t k = first; k < last; ++k) order.push_back(k);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return towards * x_[a] < towards * x_[b];
+    });
+    for (const std::size_t k : order) {
+      if (towards * (x_[k] - from) >= -tolerance_) go_to(stage, x_[k]);
+      leg_of_row_[k] = previous_leg_;
+    }
+  }
+
+  void go_to(const point::LegSpec& stage, double value) {
+    if (std::abs(value - now_) <= tolerance_) return;
     point::LegSpec leg = stage;
     leg.goal->value = value;
+    leg.goal->of_stage = false;
     leg.points = 1;
-    split.legs.emplace_back(std::move(leg));
-    previous_leg = static_cast<int>(split.legs.size()) - 1;
-    now = value;
-  };
+    leg.continues = !fresh_;
+    fresh_ = false;
+    split_.legs.emplace_back(std::move(leg));
+    previous_leg_ = static_cast<int>(split_.legs.size()) - 1;
+    now_ = value;
+  }
+
+  const point::Path& path_;
+  std::span<const double> x_;
+  std::vector<int>& leg_of_row_;
+  point::Path split_;
+  double tolerance_ = 0.0, scatter_ = 0.0;
+  double now_ = 0.0, stage_start_ = 0.0;
+  bool fresh_ = true;
+  int previous_leg_ = -1;
+};
+
+/// "0, 0.1, 0.08": where the stages lead, from the start of the test.
+std::string ends_of(const point::Path& path, std::optional<double> x_start) {
+  std::string ends;
+  double now = x_start.value_or(0.0), stage_start = now;
   for (const point::Leg& leg : path.legs) {
-    const point::LegSpec& stage = leg.spec();
-    const double end = stage.goal->value;
-    const double towards = end >= now ? 1.0 : -1.0;
-    while (next < abscissae.size()) {
-      const double value = abscissae[next];
-      if (towards * (value - now) < -tolerance || towards * (end - value) < -tolerance) break;
-      go_to(stage, value);
-      leg_of_row.push_back(previous_leg);
-      ++next;
-    }
-    if (next == abscissae.size()) break;
-    go_to(stage, end);
+    if (!leg.spec().continues) stage_start = now;
+    now = leg.spec().goal->value + (leg.spec().goal->of_stage ? stage_start : 0.0);
+    ends += (ends.empty() ? "" : ", ") + number(now);
   }
-  if (next < abscissae.size()) {
+  return ends;
+}
+
+}  // namespace
+
+point::Path split_at(const point::Path& path, Quantity x, std::optional<double> x_start,
+                     std::span<const double> abscissae, std::span<const int> lines,
+                     std::vector<int>& leg_of_row) {
+  if (abscissae.empty()) throw InputError("data", "the data have no row");
+  Splitter splitter(path, x_start, abscissae, leg_of_row);
+  const std::size_t passed = splitter.run();
+  if (passed < abscissae.size()) {
     const std::string line =
-        next < lines.size() ? " (line " + std::to_string(lines[next]) + ")" : "";
-    std::string ends;
-    for (const point::Leg& leg : path.legs)
-      ends += (ends.empty() ? "" : ", ") + number(leg.spec().goal->value);
-    throw InputError("data", "the row at " + std::string(point::column_name(x)) + " = " +
-                                 number(abscissae[next]) + line +
-                                 " is not on the way of the test, which leads from " +
-                                 number(x_start) + " to " + ends +
-                                 ": rows must stand in the order of the test");
+        passed < lines.size() ? " (line " + std::to_string(lines[passed]) + ")" : "";
+    bool of_stage = false;
+    for (std::size_t i = 1; i < path.legs.size(); ++i)
+      of_stage = of_stage || path.legs[i].spec().goal->of_stage;
+    throw InputError(
+        "data", "the row at " + std::string(point::column_name(x)) + " = " +
+                    number(abscissae[passed]) + line +
+                    " is not on the way of the test, which leads" +
+                    (x_start ? " from " + number(*x_start) : "") + " to " + ends_of(path, x_start) +
+                    ": rows must stand in the order of the test" +
+                    (of_stage ? "; a stage's strain counts from the start of the stage, one of the "
+                                "whole test is spelt ..._total"
+                              : "; leave the test's end out to drive it to the last row"));
   }
+  point::Path split = splitter.take();
   if (split.legs.empty())
     throw InputError("data", "the data have no row beyond the start of the test");
   return split;
+}
+
+bool take_stage_strains_as_totals(PointExperiment& e) {
+  point::Path totals = e.test.path;
+  totals.legs.clear();
+  bool any = false;
+  for (const point::Leg& leg : e.test.path.legs) {
+    point::LegSpec spec = leg.spec();
+    any = any || (spec.goal && spec.goal->of_stage && !totals.legs.empty());
+    if (spec.goal) spec.goal->of_stage = false;
+    totals.legs.emplace_back(std::move(spec));
+  }
+  if (!any || e.rows != Rows::at_data || !leads_along(e.test.path, e.x)) return false;
+  const std::optional<double> start = x_at_start(e);
+  std::vector<int> rows;
+  const auto passes = [&](const point::Path& path) {
+    return Splitter(path, start, e.abscissae, rows).run() == e.abscissae.size();
+  };
+  if (passes(e.test.path) || !passes(totals)) return false;
+  e.test.path = std::move(totals);
+  return true;
 }
 
 point::Path flow_curve_path(std::span<const double> shear_rates, point::Condition condition,

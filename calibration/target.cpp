@@ -22,16 +22,52 @@ struct OnCurve {
   double t = 0.0;
 };
 
-/// The place on the curve with this x, on the first segment that spans it; the nearer end if none
-/// does.
-OnCurve at_x(const Eigen::VectorXd& x, double wanted) {
-  for (Index i = 0; i + 1 < x.size(); ++i) {
+/// A stretch of rows over which x runs one way.
+struct Branch {
+  Index first = 0, last = 0;  ///< both included; branches share their turning points
+  double way = 1.0;           ///< the sign of its change of x
+  bool reached = true;        ///< false: the curve ended before, and its end stands for the branch
+};
+
+/// Cuts a series where x turns round by more than `least`: smaller steps back are scatter.
+std::vector<Branch> branches_of(const Eigen::VectorXd& x, double least) {
+  std::vector<Branch> list;
+  const Index n = x.size();
+  Index start = 0, far = 0;
+  double way = 0.0;
+  for (Index i = 1; i < n; ++i) {
+    if (way == 0.0) {
+      if (std::abs(x[i] - x[start]) <= least) continue;
+      way = x[i] > x[start] ? 1.0 : -1.0;
+      far = i;
+    } else if (way * (x[i] - x[far]) >= 0.0) {
+      far = i;
+    } else if (way * (x[far] - x[i]) > least) {
+      list.push_back({start, far, way, true});
+      start = far;
+      far = i;
+      way = -way;
+    }
+  }
+  list.push_back({start, n - 1, way == 0.0 ? 1.0 : way, true});
+  return list;
+}
+
+/// The place on a branch with this x, on the first segment that spans it; beyond its ends on the
+/// continuation of the last segment, or the nearer end itself.
+OnCurve at_x(const Eigen::VectorXd& x, const Branch& on, double wanted, bool continues) {
+  if (!on.reached) return {on.last - 1, 1.0};
+  for (Index i = on.first; i < on.last; ++i) {
     const double a = x[i] - wanted, b = x[i + 1] - wanted;
     if (a == 0.0) return {i, 0.0};
     if ((a < 0.0) != (b < 0.0) || b == 0.0) return {i, a / (a - b)};
   }
-  const bool first = std::abs(x[0] - wanted) < std::abs(x[x.size() - 1] - wanted);
-  return first ? OnCurve{0, 0.0} : OnCurve{x.size() - 2, 1.0};
+  const bool before = std::abs(wanted - x[on.first]) < std::abs(wanted - x[on.last]);
+  const Index i = before ? on.first : on.last - 1;
+  const double dx = x[i + 1] - x[i];
+  const double range = std::abs(x[on.last] - x[on.first]);
+  if (!continues || !(std::abs(dx) > 1e-9 * range)) return {i, before ? 0.0 : 1.0};
+  return {i, (wanted - x[i]) / dx};
 }
 
 /// The nearest place on the curve in scaled axes.
@@ -85,17 +121,45 @@ struct Filler {
     }
   }
 
+  /// For each row the branch of the simulated curve that it is compared with: branches count in
+  /// the order of the path, from the first that runs the way of the data's first.
+  std::vector<Branch> matched() const {
+    const double least = 0.01 * range_of(target.x);
+    const auto data = branches_of(target.x, least), curve = branches_of(response.x, least);
+    const std::size_t offset = curve.size() > 1 && curve[0].way != data[0].way ? 1 : 0;
+    std::vector<Branch> of_row(static_cast<std::size_t>(target.rows()));
+    for (std::size_t b = data.size(); b-- > 0;) {  // a turning point belongs to the earlier one
+      const bool there = b + offset < curve.size();
+      Branch branch = there ? curve[b + offset] : curve.back();
+      branch.reached = there;
+      for (Index i = data[b].first; i <= data[b].last; ++i)
+        of_row[static_cast<std::size_t>(i)] = branch;
+    }
+    return of_row;
+  }
+
   void along(Index c) const {
     const Channel& channel = target.channels[static_cast<std::size_t>(c)];
     const Index n = target.rows();
     const Eigen::VectorXd y = response.y.col(c);
+    const double x_range = range_of(target.x);
+    const std::vector<Branch> branch =
+        target.compare == Compare::distance ? std::vector<Branch>() : matched();
     for (Index i = 0; i < n; ++i) {
       const double s = scale_of(channel, i);
       // one range of x counts as much as one range of y
-      const double sx = range_of(target.x) * s / range_of(channel.observed);
+      const double sx = x_range * s / range_of(channel.observed);
       const double px = target.x[i], py = channel.observed[i];
       const bool distance = target.compare == Compare::distance;
-      const OnCurve at = distance ? nearest(response.x, y, px, py, sx, s) : at_x(response.x, px);
+      const Branch on = distance ? Branch() : branch[static_cast<std::size_t>(i)];
+      const bool continues = target.continues && response.complete() && on.reached;
+      const OnCurve at =
+          distance ? nearest(response.x, y, px, py, sx, s) : at_x(response.x, on, px, continues);
+      if (c == 0 && !distance && response.complete()) {
+        const auto [low, high] = std::minmax(response.x[on.first], response.x[on.last]);
+        if (!(px >= low - 1e-6 * x_range && px <= high + 1e-6 * x_range) || !on.reached)
+          ++out.beyond;
+      }
       const double cx = blend(response.x, at)[0], cy = blend(y, at)[0];
       out.simulated(i, c) = cy;
       const double tx = (response.x[at.i + 1] - response.x[at.i]) / sx,
@@ -117,7 +181,7 @@ struct Filler {
           nx = -ty / length;
           ny = tx / length;
         }
-      } else if (tx != 0.0 && at.t > 0.0 && at.t < 1.0) {
+      } else if (tx != 0.0 && (continues || (at.t > 0.0 && at.t < 1.0))) {
         nx = -ty / tx;  // dy at fixed x: dy − (y′/x′) dx
       }
       out.r[row] = r;
@@ -131,6 +195,13 @@ struct Filler {
 };
 
 }  // namespace
+
+std::vector<double> turning_points(const Eigen::VectorXd& x) {
+  std::vector<double> points;
+  if (x.size() < 2) return points;
+  for (const Branch& branch : branches_of(x, 0.01 * range_of(x))) points.push_back(x[branch.last]);
+  return points;
+}
 
 double scale_of(const Channel& channel) {
   return channel.noise ? *channel.noise : range_of(channel.observed);
@@ -157,6 +228,7 @@ void misfit(const Target& target, const Response& response, Misfit& out) {
   out.r.resize(n * channels);
   out.simulated.resize(n, channels);
   out.slope = Eigen::MatrixXd::Zero(n * channels, wanted);
+  out.beyond = 0;
   const Filler fill{target, response, out, wanted};
   for (Index c = 0; c < channels; ++c) {
     if (target.compare == Compare::rows || response.x.size() < 2)

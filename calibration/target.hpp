@@ -23,7 +23,8 @@ struct Channel {
 /// How a simulated curve meets the data.
 enum class Compare : std::uint8_t {
   rows,         ///< the simulator's rows are the data's rows
-  interpolate,  ///< the simulated curve is read at the data's x (its x must run one way)
+  interpolate,  ///< the simulated curve is read at the data's x; where x turns round (unloading),
+                ///< branch by branch in the order of the path
   distance      ///< signed normal distance from each data point to the simulated curve, for
                 ///< softening and cyclic curves; axes scaled by the ranges of the data
 };
@@ -45,11 +46,17 @@ struct Target {
   double weight = 1.0;
   bool held_out = false;  ///< predicted and scored, not fitted
   Compare compare = Compare::rows;
+  /// Interpolation: a row beyond the end of its branch is compared with the branch's straight
+  /// continuation, so that its residual tells how far it is away; else with the end itself.
+  bool continues = false;
 
   Eigen::Index rows() const { return x.size(); }
   /// Rows of all channels.
   Eigen::Index count() const { return rows() * static_cast<Eigen::Index>(channels.size()); }
 };
+
+/// Where a series turns round (by more than a hundredth of its range), and its last value.
+std::vector<double> turning_points(const Eigen::VectorXd& x);
 
 /// What a channel's residual is divided by: its noise, or the range of what was measured.
 double scale_of(const Channel& channel);
@@ -67,6 +74,7 @@ struct Misfit {
   Eigen::MatrixXd slope;
   Eigen::MatrixXd simulated;  ///< rows × channels: the value each data point is compared with
   bool finite = true;
+  Eigen::Index beyond = 0;  ///< rows of the data beyond the end of a complete simulated curve
 };
 void misfit(const Target& target, const Response& response, Misfit& out);
 

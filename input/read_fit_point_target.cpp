@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "calibration/path_derivatives.hpp"
+#include "input/doubts.hpp"
 #include "input/read_fit_target.hpp"
 #include "input/read_point_test.hpp"
 
@@ -22,7 +23,9 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
   e.theta = theta_;
   e.test.initial = read_initial_conditions(table.table("initial"));
   e.test.settings = read_settings(table.table("integration"));
+  measure_ = read_strain_measure(table, point::StrainMeasure::logarithmic);
   read_initial_freedom(table, target, e.test.initial);
+  e.start_moves = !states_stress(e.test.initial) || stress_is_free(table);
   const bool sound = compared.x && compared.y.size() == target.channels.size() && !data.x.empty();
   if (sound)
     read_test(table, *compared.x, data, compared.rows, e, target);
@@ -31,13 +34,34 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
   if (!sound || !file_.ok()) return;
   e.x = *compared.x;
   e.y = std::move(compared.y);
-  e.abscissae = data.x;
+  e.abscissae = driven_abscissae(table, e.x, data.x);
   e.lines = data.lines;
+  if (!file_.ok()) return;
   try {
     std::vector<double> start = theta_;
     complete_parameters(*out_.info, start);
     point::check_start(*out_.info, start, e.test);
+    for (const std::string& doubt : doubts(*out_.info, start, e.test.initial))
+      out_.notes.push_back(fmt::format("{}: {}", target.name, doubt));
+    if (!e.test.path.undrained && std::find(e.y.begin(), e.y.end(), Quantity::u) != e.y.end())
+      out_.notes.push_back(
+          fmt::format("{}: u_Pa is fitted to a test without an undrained stage, "
+                      "where the excess pore pressure is zero whatever the "
+                      "parameters",
+                      target.name));
+    if (calibration::take_stage_strains_as_totals(e))
+      out_.notes.push_back(
+          fmt::format("{}: the rows do not pass stages whose strains count from "
+                      "the start of the stage, but the same strains counted from "
+                      "the start of the test: they are taken so (spelt ..._total)",
+                      target.name));
+    const bool strained = is_strain_driven(e.test.path);
+    const Quantity x = e.x;
+    const bool along = e.rows == calibration::Rows::along;
     target.simulator = calibration::make_point_simulator(std::move(e));
+    if (along && strained && target.compare == Compare::interpolate)
+      check_reach(table, x, data, target);
+    if (!file_.ok()) return;
   } catch (const InputError& error) {
     const bool parameter = point::parameter_index(out_.info->parameters, error.key()) >= 0;
     if (error.key() == "data" || error.key() == "initial")
@@ -46,9 +70,70 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
       file_.report(error, parameter ? "fit" : join_path(table.path(), "initial"));
     return;
   }
+  about.strain = point::name_of(measure_);
   out_.coarse.push_back(target);
   out_.targets.push_back(std::move(target));
   out_.about.push_back(std::move(about));
+}
+
+/// Is the stress at the start, or a part of it, fitted?
+bool TargetReader::stress_is_free(TomlReader& table) {
+  TomlReader free = table.table("free");
+  return free.has("p") || free.has("K0");
+}
+
+/// The data's x where the path is driven to it: logarithmic where it is a strain.
+std::vector<double> TargetReader::driven_abscissae(TomlReader& table, Quantity x,
+                                                   std::vector<double> values) {
+  if (measure_ == point::StrainMeasure::logarithmic) return values;
+  for (double& value : values) {
+    const double logarithmic = point::logarithmic_strain(x, value);
+    if (std::isnan(logarithmic)) {
+      table.report("strain", fmt::format("{}: {} = {:g} is no engineering strain, which is below 1 "
+                                         "(100 %)",
+                                         table.path_of("strain"), point::column_name(x), value));
+      return values;
+    }
+    value = logarithmic;
+  }
+  return values;
+}
+
+/// Are all stages driven by a strain to a strain, so that their ends hardly depend on parameters?
+bool TargetReader::is_strain_driven(const point::Path& path) {
+  for (const point::Leg& leg : path.legs) {
+    const point::LegSpec& spec = leg.spec();
+    if (!spec.goal || spec.driver < 0) return false;
+    const point::Constraint& row = spec.rows[static_cast<std::size_t>(spec.driver)];
+    const Quantity q = spec.goal->quantity;
+    const bool strain = q == Quantity::eps_a || q == Quantity::eps_v || q == Quantity::eps_q ||
+                        q == Quantity::gamma;
+    if (row.stress != std::array<double, 6>{} || !strain) return false;
+  }
+  return !path.legs.empty();
+}
+
+/// Rows far beyond the end of a test that is driven by strain: its end is too short, whatever the
+/// parameters. A tenth of the data's range is more than these move it.
+void TargetReader::check_reach(TomlReader& table, Quantity x, const FitTable& data,
+                               const Target& target) {
+  std::vector<double> inputs = target.inputs;
+  std::copy(theta_.begin(), theta_.end(), inputs.begin());
+  calibration::Response response;
+  target.simulator->simulate(inputs, {}, response);
+  if (!response.complete() || response.x.size() < 2) return;
+  const double low = response.x.minCoeff(), high = response.x.maxCoeff();
+  const double slack = 0.1 * (target.x.maxCoeff() - target.x.minCoeff());
+  for (std::size_t i = 0; i < data.x.size(); ++i) {
+    if (data.x[i] >= low - slack && data.x[i] <= high + slack) continue;
+    table.report("data",
+                 fmt::format("{}: the row at {} = {:g} (line {}) lies beyond the test, which goes "
+                             "from {:g} to {:g}: leave the test's end out to drive it to the last "
+                             "row, or give one that reaches it",
+                             table.path_of("data"), point::column_name(x), data.x[i],
+                             i < data.lines.size() ? data.lines[i] : 0, low, high));
+    return;
+  }
 }
 
 /// free = { ocr = { lower, upper } } or { ocr = "name of a shared quantity" }
@@ -107,14 +192,27 @@ void TargetReader::read_test(TomlReader& table, Quantity x, const FitTable& data
     return;
   }
   point::Kind kind = point::Kind::triaxial;
-  e.test.path = read_path(test, kind);
+  PathReading reading;
+  reading.max_strain = e.test.settings.max_strain;
+  reading.measure = measure_;
+  for (const double end : calibration::turning_points(target.x)) {
+    point::Goal goal{x, end, false, point::StrainMeasure::logarithmic};
+    if (x == Quantity::eps_q)
+      goal.measure = measure_;  // located on the way
+    else if (measure_ == point::StrainMeasure::engineering)
+      goal.value = point::logarithmic_strain(x, end);
+    reading.ends.push_back(goal);
+  }
+  e.test.path = read_path(test, kind, reading);
   if (!file_.ok()) return;
+  e.test.path.measure = measure_;  // of the data, whatever the test's own ends are written in
   const bool leads = calibration::leads_along(e.test.path, x);
   if (compare == Compare::distance) {
     target.compare = Compare::distance;
     e.rows = calibration::Rows::along;
   } else if (compare == Compare::interpolate || !leads) {
     target.compare = Compare::interpolate;
+    target.continues = true;
     e.rows = calibration::Rows::along;
     if (compare == Compare::rows)
       out_.notes.push_back(
@@ -133,8 +231,9 @@ void TargetReader::read_flow_curve(TomlReader& test, Quantity x, const FitTable&
                                   point::Condition::constant_p};
   const auto condition = conditions[test.choice(
       "drainage", {"constant_volume", "constant_normal_stress", "constant_p"}, 0)];
-  const double strain = test.number(
-      {"shear_strain", "-", "shear strain at each rate, enough to become steady", positive, 0.5});
+  const double strain =
+      test.number({"shear_strain", "-", "shear strain at each rate, enough to become steady",
+                   Range{0.0, e.test.settings.max_strain, true, false}, 0.5});
   std::vector<double> rates = data.x;
   if (x == Quantity::I) {
     // γ̇ = I √(p/ρ_p)/d (physics.md, MUI-2), so d and ρ_p must be known

@@ -44,6 +44,12 @@ class TargetReader {
                          calibration::Target target, TargetAbout about);
   void read_initial_freedom(TomlReader& table, calibration::Target& target,
                             InitialConditions& initial);
+  bool stress_is_free(TomlReader& table);
+  std::vector<double> driven_abscissae(TomlReader& table, point::Quantity x,
+                                       std::vector<double> values);
+  static bool is_strain_driven(const point::Path& path);
+  void check_reach(TomlReader& table, point::Quantity x, const FitTable& data,
+                   const calibration::Target& target);
   void read_test(TomlReader& table, point::Quantity x, const FitTable& data,
                  calibration::Compare compare, calibration::PointExperiment& e,
                  calibration::Target& target);
@@ -56,6 +62,7 @@ class TargetReader {
   std::vector<double> theta_;
   std::filesystem::path cache_;
   bool has_coarse_ = false;
+  point::StrainMeasure measure_ = point::StrainMeasure::logarithmic;  ///< of the present target
 };
 
 }  // namespace repose::input

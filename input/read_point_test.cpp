@@ -1,9 +1,11 @@
 #include "input/read_point_test.hpp"
 
+#include <cmath>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "input/doubts.hpp"
 #include "io/atomic_file.hpp"
 #include "pointdriver/path/history.hpp"
 
@@ -22,11 +24,19 @@ struct GoalKey {
   std::string_view key;
   Quantity quantity;
   std::string_view unit, doc;
+  bool of_stage = false;  ///< a strain that counts from the start of the stage
 };
 constexpr std::array goal_keys{
-    GoalKey{"axial_strain", Quantity::eps_a, "-", "axial strain to reach, compression positive"},
-    GoalKey{"shear_strain", Quantity::gamma, "-", "shear strain to reach"},
-    GoalKey{"volumetric_strain", Quantity::eps_v, "-", "volumetric strain to reach"},
+    GoalKey{"axial_strain", Quantity::eps_a, "-",
+            "axial strain of this stage, compression positive", true},
+    GoalKey{"shear_strain", Quantity::gamma, "-", "shear strain of this stage", true},
+    GoalKey{"volumetric_strain", Quantity::eps_v, "-", "volumetric strain of this stage", true},
+    GoalKey{"axial_strain_total", Quantity::eps_a, "-",
+            "axial strain to reach, counted from the start of the test"},
+    GoalKey{"shear_strain_total", Quantity::gamma, "-",
+            "shear strain to reach, counted from the start of the test"},
+    GoalKey{"volumetric_strain_total", Quantity::eps_v, "-",
+            "volumetric strain to reach, counted from the start of the test"},
     GoalKey{"p_end", Quantity::p, "Pa", "mean stress to reach"},
     GoalKey{"q_end", Quantity::q, "Pa", "deviator stress to reach"},
     GoalKey{"sigma_a_end", Quantity::sigma_a, "Pa", "axial stress to reach"},
@@ -40,14 +50,19 @@ constexpr std::array cycle_keys{
     GoalKey{"p", Quantity::p, "Pa", "of the cycles"},
     GoalKey{"sigma_a", Quantity::sigma_a, "Pa", "of the cycles"},
     GoalKey{"tau", Quantity::tau, "Pa", "of the cycles"},
-    GoalKey{"axial_strain", Quantity::eps_a, "-", "of the cycles"},
-    GoalKey{"shear_strain", Quantity::gamma, "-", "of the cycles"},
-    GoalKey{"volumetric_strain", Quantity::eps_v, "-", "of the cycles"}};
+    GoalKey{"axial_strain", Quantity::eps_a, "-", "of the cycles", true},
+    GoalKey{"shear_strain", Quantity::gamma, "-", "of the cycles", true},
+    GoalKey{"volumetric_strain", Quantity::eps_v, "-", "of the cycles", true},
+    GoalKey{"axial_strain_total", Quantity::eps_a, "-", "of the cycles"},
+    GoalKey{"shear_strain_total", Quantity::gamma, "-", "of the cycles"},
+    GoalKey{"volumetric_strain_total", Quantity::eps_v, "-", "of the cycles"}};
 
 constexpr std::array stop_keys{
     GoalKey{"q_over_p", Quantity::eta, "-", "stop at this stress ratio"},
-    GoalKey{"eps_q", Quantity::eps_q, "-", "stop at this deviatoric strain"},
-    GoalKey{"eps_v", Quantity::eps_v, "-", "stop at this volumetric strain"},
+    GoalKey{"eps_q", Quantity::eps_q, "-", "stop at this deviatoric strain of the stage", true},
+    GoalKey{"eps_v", Quantity::eps_v, "-", "stop at this volumetric strain of the stage", true},
+    GoalKey{"eps_q_total", Quantity::eps_q, "-", "the same, counted from the start of the test"},
+    GoalKey{"eps_v_total", Quantity::eps_v, "-", "the same, counted from the start of the test"},
     GoalKey{"p_below", Quantity::p, "Pa", "stop when p falls to this"},
     GoalKey{"p_above", Quantity::p, "Pa", "stop when p rises to this"},
     GoalKey{"q", Quantity::q, "Pa", "stop at this deviator stress"},
@@ -59,7 +74,42 @@ struct Inherited {
   Stage stage;
   bool drainage_given = false;
   std::optional<Drive> drive;
+  PathReading reading;
 };
+
+bool is_strain(Quantity q) {
+  return q == Quantity::eps_a || q == Quantity::eps_r || q == Quantity::eps_v ||
+         q == Quantity::eps_q || q == Quantity::gamma;
+}
+
+/// 15 under a key that is a strain: per cent are meant.
+void check_strain(TomlReader& table, std::string_view key, double x, const PathReading& reading) {
+  if (std::abs(x) <= reading.max_strain) return;
+  table.report(key,
+               fmt::format("{} = {:g} is {:g} %; did you mean {:g}? Strains are fractions, and "
+                           "a path ends at integration.max_strain = {:g}",
+                           table.path_of(key), x, 100.0 * x, 0.01 * x, reading.max_strain));
+}
+
+/// A goal as a key gives it, in logarithmic strain where it is driven to.
+Goal goal_of(TomlReader& table, std::string_view key, const GoalKey& about, double x,
+             const PathReading& reading) {
+  Goal goal{about.quantity, x, about.of_stage, point::StrainMeasure::logarithmic};
+  if (!is_strain(about.quantity)) return goal;
+  check_strain(table, key, x, reading);
+  if (reading.measure == point::StrainMeasure::logarithmic) return goal;
+  if (about.quantity == Quantity::eps_q) {
+    goal.measure = reading.measure;
+    return goal;
+  }
+  goal.value = point::logarithmic_strain(about.quantity, x);
+  if (std::isnan(goal.value)) {
+    table.report(key, fmt::format("{} = {:g}: an engineering strain is below 1 (100 %)",
+                                  table.path_of(key), x));
+    goal.value = 0.0;
+  }
+  return goal;
+}
 
 Condition default_condition(Kind kind) {
   return kind == Kind::simple_shear ? Condition::constant_volume : Condition::drained;
@@ -99,7 +149,7 @@ void read_condition(TomlReader& table, Inherited& about) {
   }
 }
 
-std::vector<Goal> read_stops(TomlReader& table) {
+std::vector<Goal> read_stops(TomlReader& table, const PathReading& reading) {
   std::vector<Goal> stops;
   if (!table.has("stop")) {
     table.expect("stop");
@@ -108,7 +158,7 @@ std::vector<Goal> read_stops(TomlReader& table) {
   TomlReader stop = table.table("stop");
   for (const GoalKey& key : stop_keys)
     if (const auto x = stop.optional_number({key.key, key.unit, key.doc, {}, {}}))
-      stops.push_back({key.quantity, *x});
+      stops.push_back(goal_of(stop, key.key, key, *x, reading));
   return stops;
 }
 
@@ -125,12 +175,13 @@ void read_shared(TomlReader& table, Inherited& about) {
   stage.strain_limit =
       table.number({"strain_limit", "-", "how far a stage may strain in search of its end",
                     positive, stage.strain_limit});
+  check_strain(table, "strain_limit", stage.strain_limit, about.reading);
   if (table.has("control"))
     about.drive =
         table.choice("control", {"strain", "stress"}, 0) == 0 ? Drive::strain : Drive::stress;
   else
     table.expect("control");
-  const std::vector<Goal> stops = read_stops(table);
+  const std::vector<Goal> stops = read_stops(table, about.reading);
   if (!stops.empty()) stage.stops = stops;
 }
 
@@ -154,10 +205,11 @@ std::vector<Stage> read_cycles(TomlReader& table, const Inherited& about) {
       table.report(low, fmt::format("{} must be < {}", table.path_of(low), table.path_of(high)));
       return {};
     }
+    const Goal down = goal_of(table, low, key, lower, about.reading);
     Stage half = about.stage;
-    half.goal = Goal{key.quantity, upper};
+    half.goal = goal_of(table, high, key, upper, about.reading);
     half.drive = about.drive.value_or(usual_drive(half));
-    return point::cycles(half, key.quantity, lower, upper, n);
+    return point::cycles(half, key.quantity, down.value, half.goal->value, n, key.of_stage);
   }
   table.report("cycles",
                "cycles need limits: q_min and q_max, axial_strain_min and "
@@ -173,11 +225,42 @@ std::vector<Stage> read_rates(TomlReader& table, const Inherited& about) {
       static_cast<int>(rates.integer("count", "number of rates", 2, 10000, std::nullopt));
   const double strain = table.number(
       {"shear_strain", "-", "shear strain at each rate, enough to become steady", positive, 0.5});
+  check_strain(table, "shear_strain", strain, about.reading);
   if (about.stage.kind != Kind::simple_shear)
     table.report("rates", "rates belong to kind = \"simple_shear\"");
   if (!(to >= from)) rates.report("to", "test.rates.to must be >= test.rates.from");
   if (!table.file().ok()) return {};
   return point::rate_sweep(about.stage, from, to, count, strain);
+}
+
+/// Is this a quantity that the stage leads to whichever way it is driven?
+bool leads_surely(const Stage& stage, Quantity q) {
+  switch (stage.kind) {
+    case Kind::triaxial:
+      return q == Quantity::eps_a || q == Quantity::eps_q || q == Quantity::q;
+    case Kind::isotropic:
+      return q == Quantity::p || q == Quantity::eps_v;
+    case Kind::oedometer:
+      return q == Quantity::sigma_a || q == Quantity::eps_a || q == Quantity::eps_v;
+    case Kind::simple_shear:
+      return q == Quantity::gamma || q == Quantity::tau;
+    case Kind::custom:
+      break;
+  }
+  return false;
+}
+
+/// A test without an end of its own, driven to where the data turn round and to their last row.
+std::vector<Stage> stages_to_data(const Inherited& about) {
+  std::vector<Stage> stages;
+  for (const Goal& end : about.reading.ends) {
+    Stage stage = about.stage;
+    stage.goal = end;
+    if (!leads_surely(stage, end.quantity)) return {};
+    stage.drive = about.drive.value_or(usual_drive(stage));
+    stages.push_back(stage);
+  }
+  return stages;
 }
 
 std::vector<Stage> read_named_stage(TomlReader& table, Inherited about) {
@@ -198,14 +281,18 @@ std::vector<Stage> read_named_stage(TomlReader& table, Inherited about) {
                                         table.path_of(key.key)));
       return {};
     }
-    stage.goal = Goal{key.quantity, *x};
+    stage.goal = goal_of(table, key.key, key, *x, about.reading);
   }
   if (!stage.goal) {
-    table.report("", fmt::format("{} says not where the stage ends: axial_strain, shear_strain, "
-                                 "volumetric_strain, p_end, q_end, sigma_a_end, tau_end, "
-                                 "q_over_p_end, or hold with duration, or cycles",
-                                 table_name(table.path())));
-    return {};
+    std::vector<Stage> stages = stages_to_data(about);
+    if (stages.empty())
+      table.report("",
+                   fmt::format("{} says not where the stage ends: axial_strain, shear_strain, "
+                               "volumetric_strain (of the stage; ..._total of the test), p_end, "
+                               "q_end, sigma_a_end, tau_end, q_over_p_end, or hold with "
+                               "duration, or cycles",
+                               table_name(table.path())));
+    return stages;
   }
   stage.drive = about.drive.value_or(usual_drive(stage));
   return {stage};
@@ -262,12 +349,15 @@ point::LegSpec read_custom_stage(TomlReader& table, const Inherited& about) {
   return leg;
 }
 
-point::Path read_history(TomlReader& table) {
+point::Path read_history(TomlReader& table, const PathReading& reading) {
   const std::string name = table.text("history", "a CSV table");
   std::filesystem::path file = name;
   if (file.is_relative()) file = std::filesystem::path(table.file().name()).parent_path() / file;
+  const auto is = table.choice("history_is", {"absolute", "change"}, 0) == 0
+                      ? point::HistoryIs::absolute
+                      : point::HistoryIs::change;
   try {
-    return point::history_path(point::read_table(file));
+    return point::history_path(point::read_table(file), is, reading.measure, reading.max_strain);
   } catch (const point::TableError& error) {
     table.report("history", error.what());
   } catch (const std::system_error& error) {
@@ -280,10 +370,26 @@ point::Path read_history(TomlReader& table) {
 
 InitialConditions read_initial_conditions(TomlReader table) {
   InitialConditions initial;
+  const Range from_one{1.0, positive.upper, false, true};
   initial.p = table.optional_number({"p", "Pa", "mean pressure", {}, {}});
+  initial.sigma_v = table.optional_number(
+      {"sigma_v", "Pa", "vertical stress, with K0, in place of p", positive, {}});
   initial.ocr = table.optional_number(
-      {"ocr", "-", "overconsolidation ratio p_c/p", Range{1.0, positive.upper, false, true}, {}});
+      {"ocr", "-", "overconsolidation ratio p_c/p, of mean stresses", from_one, {}});
+  initial.ocr_v =
+      table.optional_number({"ocr_v",
+                             "-",
+                             "overconsolidation ratio of vertical stresses, sigma_v,max/sigma_v",
+                             from_one,
+                             {}});
+  initial.K0_nc = table.optional_number(
+      {"K0_nc", "-", "ratio of radial to axial stress at sigma_v,max (default: K0)", positive, {}});
   initial.v = table.optional_number({"v", "-", "specific volume", Range{1.0, positive.upper}, {}});
+  if (const auto e = table.optional_number({"e", "-", "void ratio, v = 1 + e", positive, {}})) {
+    if (initial.v)
+      table.report("e", fmt::format("{}: give either e or v = 1 + e", table.path_of("e")));
+    initial.v = 1.0 + *e;
+  }
   initial.density = table.optional_number({"density", "kg/m³", "density", positive, {}});
   initial.K0 = table.optional_number({"K0", "-", "ratio of radial to axial stress", positive, {}});
   if (const auto sigma = table.numbers(
@@ -292,6 +398,13 @@ InitialConditions read_initial_conditions(TomlReader table) {
     std::copy(sigma->begin(), sigma->end(), initial.sigma->begin());
   }
   return initial;
+}
+
+point::StrainMeasure read_strain_measure(TomlReader& table, point::StrainMeasure fallback) {
+  constexpr std::array measures{point::StrainMeasure::logarithmic,
+                                point::StrainMeasure::engineering};
+  return measures[table.choice("strain", {"logarithmic", "engineering"},
+                               fallback == point::StrainMeasure::logarithmic ? 0 : 1)];
 }
 
 point::Settings read_settings(TomlReader table) {
@@ -312,8 +425,10 @@ point::Settings read_settings(TomlReader table) {
   return settings;
 }
 
-point::Path read_path(TomlReader test, Kind& kind) {
+point::Path read_path(TomlReader test, Kind& kind, const PathReading& reading) {
   Inherited about;
+  about.reading = reading;
+  about.reading.measure = read_strain_measure(test, reading.measure);
   kind = read_kind(test, std::nullopt);
   about.stage.kind = kind;
   about.stage.condition = default_condition(kind);
@@ -323,7 +438,7 @@ point::Path read_path(TomlReader test, Kind& kind) {
   try {
     if (test.has("history")) {
       if (kind != Kind::custom) test.report("history", "a history belongs to kind = \"custom\"");
-      return read_history(test);
+      return read_history(test, about.reading);
     }
     read_shared(test, about);
     std::vector<Stage> stages;
@@ -336,6 +451,7 @@ point::Path read_path(TomlReader test, Kind& kind) {
     } else {
       for (TomlReader& table : test.tables("stages", "a stage of the test")) {
         Inherited own = about;
+        own.reading.ends.clear();
         own.stage.kind = read_kind(table, kind);
         if ((own.stage.kind == Kind::custom) != (kind == Kind::custom)) {
           table.report("kind", "custom and named stages cannot be mixed in one test");
@@ -352,7 +468,10 @@ point::Path read_path(TomlReader test, Kind& kind) {
       }
     }
     if (!test.file().ok()) return {};
-    return kind == Kind::custom ? point::custom_path(std::move(legs)) : point::path_of(stages);
+    point::Path path =
+        kind == Kind::custom ? point::custom_path(std::move(legs)) : point::path_of(stages);
+    path.measure = about.reading.measure;
+    return path;
   } catch (const InputError& error) {
     test.file().report(error, test.path());
     return {};
@@ -365,8 +484,10 @@ PointTestFile read_point_test(InputFile& file) {
   TomlReader root(file);
   result.law = read_law(root.table("law"));
   result.test.initial = read_initial_conditions(root.table("initial"));
-  result.test.path = read_path(root.table("test"), result.kind);
   result.test.settings = read_settings(root.table("integration"));
+  PathReading reading;
+  reading.max_strain = result.test.settings.max_strain;
+  result.test.path = read_path(root.table("test"), result.kind, reading);
   file.throw_if_bad();
   const LawInfo& law = find_law(result.law);
   const point::Method method = point::method_for(law, result.test.settings.method);
@@ -379,9 +500,10 @@ PointTestFile read_point_test(InputFile& file) {
     point::check_start(law, checked_parameters(result.law), result.test);
   } catch (const InputError& error) {
     const bool parameter = point::parameter_index(law.parameters, error.key()) >= 0;
-    file.report(error, parameter ? "law" : "initial");
+    file.report(error, parameter ? "law" : error.key() == "history" ? "test" : "initial");
   }
   file.throw_if_bad();
+  result.notes = doubts(law, checked_parameters(result.law), result.test.initial);
   return result;
 }
 

@@ -12,19 +12,32 @@ struct PointTestFile {
   LawSpec law;
   point::PointTest test;
   point::Kind kind = point::Kind::triaxial;
-  std::string name;  ///< of the result folder: the file's stem
+  std::string name;                ///< of the result folder: the file's stem
+  std::vector<std::string> notes;  ///< what is possible but hardly meant
+};
+
+/// How a [test] table is read, beside what it says itself.
+struct PathReading {
+  double max_strain = point::Settings().max_strain;  ///< a key beyond it is taken for per cent
+  /// Of its strains, unless it says `strain = ...`.
+  point::StrainMeasure measure = point::StrainMeasure::logarithmic;
+  /// Where the data turn round, and their last row: a test that says no end is driven there.
+  std::vector<point::Goal> ends;
 };
 
 /// Reads and validates a point test, the start of the law included. Throws BadInput with everything
 /// that is wrong; a history's table that cannot be used is bad input too.
 PointTestFile read_point_test(InputFile& file);
 
-/// p, ocr, v, density, K0, sigma.
+/// p or sigma_v, ocr or ocr_v with K0_nc, v or e, density, K0, sigma.
 InitialConditions read_initial_conditions(TomlReader table);
 
-/// A [test] table: kind, drainage, goals, stages, cycles, rates, history, custom constraints. What
-/// is wrong is reported; the path may then be empty.
-point::Path read_path(TomlReader test, point::Kind& kind);
+/// A [test] table: kind, drainage, strain, goals, stages, cycles, rates, history, custom
+/// constraints. What is wrong is reported; the path may then be empty.
+point::Path read_path(TomlReader test, point::Kind& kind, const PathReading& reading = {});
+
+/// strain = "logarithmic" or "engineering".
+point::StrainMeasure read_strain_measure(TomlReader& table, point::StrainMeasure fallback);
 
 /// An [integration] table; every key is optional.
 point::Settings read_settings(TomlReader table);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "input/doubts.hpp"
 #include "input/key_info.hpp"
 #include "input/read_initial.hpp"
 #include "input/read_keys.hpp"
@@ -314,6 +315,11 @@ SceneFile read_scene(InputFile& file) {
     }
   }
   file.throw_if_bad();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const LawSpec& law = scene.bodies[i].law;
+    for (const std::string& doubt : doubts(find_law(law), checked_parameters(law), {}))
+      result.notes.push_back(fmt::format("body[{}].{}", i, doubt));
+  }
   return result;
 }
 

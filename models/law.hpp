@@ -35,11 +35,14 @@ enum class Branch : std::uint8_t { elastic, plastic };
 
 /// Starting conditions in a user's terms; a law takes what it understands and rejects the rest.
 struct InitialConditions {
-  std::optional<double> p;                     ///< mean pressure [Pa]
-  std::optional<double> ocr;                   ///< p_c/p [-]
-  std::optional<double> v;                     ///< specific volume [-]
-  std::optional<double> density;               ///< [kg/m³]
-  std::optional<double> K0;                    ///< σ_horizontal/σ_vertical, vertical = y [-]
+  std::optional<double> p;        ///< mean pressure [Pa]
+  std::optional<double> sigma_v;  ///< vertical stress, with K0, in place of p [Pa]
+  std::optional<double> ocr;      ///< p_c/p [-]
+  std::optional<double> ocr_v;    ///< greatest vertical stress over the present one [-]
+  std::optional<double> K0_nc;    ///< σ_h/σ_v at the greatest one, if not K0 [-]
+  std::optional<double> v;        ///< specific volume [-]
+  std::optional<double> density;  ///< [kg/m³]
+  std::optional<double> K0;       ///< σ_horizontal/σ_vertical, vertical = y [-]
   std::optional<std::array<double, 6>> sigma;  ///< xx,yy,zz,xy,yz,zx, COMPRESSION positive [Pa]
 };
 
@@ -50,8 +53,19 @@ struct InitialPoint {
   double density = 0.0;
 };
 
-/// The stress of an initial condition: from sigma, or from p and K0 (vertical = y). p defaults to
-/// `default_p`. Throws InputError where both are given or a value is out of range.
+/// Is the stress given, and not left to follow from volume?
+inline bool states_stress(const InitialConditions& given) {
+  return given.p || given.sigma || given.sigma_v;
+}
+
+/// The key under which it is given, for messages.
+inline const char* stress_key(const InitialConditions& given) {
+  return given.sigma ? "sigma" : given.sigma_v ? "sigma_v" : "p";
+}
+
+/// The stress of an initial condition: from sigma, from p and K0 (vertical = y), or from sigma_v
+/// and K0. p defaults to `default_p`. Throws InputError where two are given or a value is out of
+/// range.
 Sym<double, 6> initial_stress(const InitialConditions& given, double default_p);
 
 /// Throws InputError if a condition that the law has no use for is given.

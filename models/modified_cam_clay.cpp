@@ -1,6 +1,8 @@
 #include "models/modified_cam_clay.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 namespace repose {
@@ -24,6 +26,24 @@ double volume_on_lines(const typename Law<compression>::template Params<double>&
 template <Compression compression>
 double drop_to(const typename Law<compression>::template Params<double>& P, double v) {
   return compression == Compression::ln_v_ln_p ? std::log(P.N / v) : P.N - v;
+}
+
+std::string digits(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.5g", x);
+  return text.data();
+}
+
+/// p_c of the yield surface through the stress under the greatest vertical stress, ocr_v times the
+/// present one, with the ratio K0_nc or else that of the present stress.
+template <Compression compression>
+double greatest_p_c(const typename Law<compression>::template Params<double>& P,
+                    const InitialConditions& given, const Sym<double, 6>& stress) {
+  const double vertical = -stress[1];
+  const double K0 = given.K0_nc.value_or(0.5 * (stress[0] + stress[2]) / stress[1]);
+  const double greatest = *given.ocr_v * vertical;
+  const double p = greatest * (1.0 + 2.0 * K0) / 3.0 + P.p_shift;
+  return p + square(greatest * (1.0 - K0) / P.M) / p;
 }
 
 }  // namespace
@@ -76,8 +96,19 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
   reject_unused(name, given, true, true);
   if (given.v && given.density)
     throw InputError("v", "give either v or density: v = rho_p/density");
+  if (given.ocr && given.ocr_v)
+    throw InputError("ocr_v",
+                     "give either ocr = p_c/p or ocr_v = sigma_v,max/sigma_v (vertical stresses)");
   if (given.ocr && !(*given.ocr >= 1.0 && std::isfinite(*given.ocr)))
     throw InputError("ocr", "ocr = p_c/p must be >= 1");
+  if (given.ocr_v && !(*given.ocr_v >= 1.0 && std::isfinite(*given.ocr_v)))
+    throw InputError("ocr_v", "ocr_v = sigma_v,max/sigma_v must be >= 1");
+  if (given.K0_nc && !given.ocr_v)
+    throw InputError("K0_nc",
+                     "K0_nc is the stress ratio at the greatest vertical stress and belongs "
+                     "to ocr_v, which is not given");
+  if (given.K0_nc && !(*given.K0_nc > 0.0 && std::isfinite(*given.K0_nc)))
+    throw InputError("K0_nc", "K0_nc = sigma_horizontal/sigma_vertical must be > 0");
   std::optional<double> v = given.v;
   if (given.density) v = P.rho_p / *given.density;
   if (v && !(*v > 1.0 && std::isfinite(*v)))
@@ -87,11 +118,20 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
 
   InitialPoint point;
   double p_c = 0.0;
-  if (!given.p && !given.sigma) {
+  if (!states_stress(given)) {
     // v and ocr on the compression line give p
     if (!v) throw InputError("p", "modified_cam_clay needs an initial p, sigma, v or density");
     if (!has_line) throw InputError("Gamma", "finding p from the specific volume needs Gamma or N");
-    const double ocr = given.ocr.value_or(1.0);
+    if (given.ocr_v && P.p_shift > 0.0)
+      throw InputError("ocr_v", "with p_shift, ocr_v needs an initial p, sigma_v or sigma");
+    double ocr = given.ocr.value_or(1.0);
+    if (given.ocr_v) {
+      // all stresses grow alike, so p_c/p is that of any p
+      InitialConditions unit = given;
+      unit.p = 1.0;
+      const Sym<double, 6> at = initial_stress(unit, 0.0);
+      ocr = greatest_p_c<compression>(P, given, at) / pressure(at);
+    }
     p_c = P.p_ref * std::exp((drop_to<compression>(P, *v) + P.kappa * std::log(ocr)) / P.lambda);
     InitialConditions derived = given;
     derived.p = p_c / ocr - P.p_shift;
@@ -100,15 +140,17 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
     point.stress = initial_stress(given, 0.0);
   }
   const double p = pressure(point.stress) + P.p_shift;
-  const char* const stress_key = given.sigma ? "sigma" : "p";
   if (!(p > contact_pressure(P)))
-    throw InputError(stress_key,
+    throw InputError(stress_key(given),
                      "the initial p must be > p_sep: below it the point carries no stress");
   const double q = mises(point.stress);
   const double p_c_yield = p + square(q / P.M) / p;  // F = 0 solved for p_c (MCC-1)
-  if (p_c == 0.0) {
+  const bool volume_is_free = p_c == 0.0;
+  if (volume_is_free) {
     if (given.ocr) {
       p_c = *given.ocr * p;
+    } else if (given.ocr_v) {
+      p_c = greatest_p_c<compression>(P, given, point.stress);
     } else if (v && has_line) {
       // (v, p): ln v = ln N − λ ln(p_c/p_ref) + κ ln(p_c/p), or the same in v
       const double drop = drop_to<compression>(P, *v);
@@ -119,9 +161,21 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
   }
   if (p_c < p_c_yield * (1.0 - 1e-12))
     throw InputError(
-        given.ocr ? "ocr" : (given.K0 ? "K0" : stress_key),
+        given.ocr ? "ocr" : (given.ocr_v ? "ocr_v" : (given.K0 ? "K0" : stress_key(given))),
         "the initial stress lies outside the yield surface: p_c = " + std::to_string(p_c) +
-            " Pa, and this stress needs p_c >= " + std::to_string(p_c_yield) + " Pa");
+            " Pa, and this stress needs p_c >= " + std::to_string(p_c_yield) + " Pa" +
+            (given.ocr && given.K0 ? "; ocr is p_c/p, of mean stresses: the ratio of vertical "
+                                     "stresses sigma_v,max/sigma_v is ocr_v"
+                                   : ""));
+  if (volume_is_free && v && has_line && (given.ocr || given.ocr_v)) {
+    const double on_lines = volume_on_lines<compression>(P, p, p_c);
+    if (!(std::abs(*v - on_lines) <= 0.005 * on_lines))
+      throw InputError(given.v ? "v" : "density",
+                       "the initial state contradicts itself: v is " + digits(*v) +
+                           ", and at p = " + digits(p - P.p_shift) + " Pa with p_c = " +
+                           digits(p_c) + " Pa the compression line (Gamma or N) says " +
+                           digits(on_lines) + "; leave out v, ocr or p, or Gamma and N");
+  }
   point.density = v ? P.rho_p / *v : P.rho_p / [&] {
     if (!has_line)
       throw InputError("Gamma", "the initial specific volume needs Gamma (or N), v or density");

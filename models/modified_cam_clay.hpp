@@ -148,8 +148,10 @@ struct ModifiedCamClay {
   /// At rest under p with p_c = ocr p, on the law's own lines; needs Γ or N.
   static double density_at(const Params<double>& P, double p, double ocr);
 
-  /// From sigma, or p (with K0), with ocr (default 1: p_c on the yield surface through the stress),
-  /// and v or density or the compression line; or from v or density on the compression line alone.
+  /// From sigma, or p or sigma_v (with K0), with ocr = p_c/p or ocr_v (p_c of the yield surface
+  /// through ocr_v times the vertical stress, under K0_nc or else K0; default: through the stress
+  /// itself), and v or density or the compression line; or from v or density on the compression
+  /// line alone. A v that the line contradicts by more than 0.5 % is refused, with both figures.
   static InitialPoint initial(const Params<double>& P, const InitialConditions& given);
 
   template <class T>

@@ -86,7 +86,7 @@ InitialPoint rest_state(const P& par, const InitialConditions& given) {
   reject_unused("mu_i", given, false, false);
   InitialPoint point;
   if (given.density) {
-    if (given.p || given.sigma)
+    if (states_stress(given))
       throw InputError("density", "give either density or p for mu_i: one follows from the other");
     InitialConditions derived = given;
     derived.p = pressure_of(par, *given.density);
@@ -97,8 +97,7 @@ InitialPoint rest_state(const P& par, const InitialConditions& given) {
   }
   point.stress = initial_stress(given, 0.0);
   const double p = pressure(point.stress);
-  if (p < 0.0)
-    throw InputError(given.sigma ? "sigma" : "p", "p must be >= 0 Pa: grains carry no tension");
+  if (p < 0.0) throw InputError(stress_key(given), "p must be >= 0 Pa: grains carry no tension");
   point.density = density_at(par, p);
   // the pressure is a function of density: take the rounding of ρ into the stress, so that the
   // point is at rest to the last bit

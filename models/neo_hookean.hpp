@@ -125,7 +125,7 @@ struct NeoHookean {
     reject_unused(name, given, false, false);
     InitialPoint point;
     if (given.density) {
-      if (given.p || given.sigma || given.K0)
+      if (states_stress(given) || given.K0)
         throw InputError("density",
                          "give either density or a stress for neo_hookean: one follows from the "
                          "other");
@@ -138,7 +138,7 @@ struct NeoHookean {
     point.stress = initial_stress(given, 0.0);
     const double ln_J = log_volume(P, point.stress);
     if (std::isnan(ln_J))
-      throw InputError(given.sigma ? "sigma" : "p",
+      throw InputError(stress_key(given),
                        "no elastic deformation of neo_hookean bears this stress; it must be small "
                        "against E");
     point.density = P.rho_0 * std::exp(-ln_J);

@@ -128,7 +128,7 @@ struct Newtonian {
       throw InputError("K0", "a fluid at rest has K0 = 1, not another value");
     InitialPoint point;
     if (given.density) {
-      if (given.p || given.sigma)
+      if (states_stress(given))
         throw InputError("density",
                          "give either density or p for newtonian: one follows from the other");
       point.density = *given.density;
@@ -140,7 +140,7 @@ struct Newtonian {
       throw InputError("sigma", "a fluid at rest carries no shear stress: sigma must be isotropic");
     const double p = pressure(stress);
     if (p <= -P.K || (tension == Tension::cut_off && p < 0.0))
-      throw InputError(given.sigma ? "sigma" : "p",
+      throw InputError(stress_key(given),
                        "p must be >= 0 for newtonian with tension_cutoff, > -K without");
     point.density = density_at(P, p, 1.0);
     // the pressure of that density, so that the point is at rest to the last bit

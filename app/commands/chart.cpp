@@ -165,6 +165,7 @@ Command add_chart(CLI::App& root) {
             "run from its checkpoint (finished runs are never repeated)");
   add_set(verb, options);
   add_quiet(verb, options);
+  add_no_plot(verb, options);
   return {verb.app(), std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
           [arguments] { return run_chart(*arguments); }};
 }

@@ -201,7 +201,7 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
   }
   folder.write_file("table.csv", table_csv(runs, first));
   try {
-    figure_of(runs, task.name, first).render_svg(folder.file("chart.svg"));
+    if (!options.no_plot) figure_of(runs, task.name, first).render_svg(folder.file("chart.svg"));
   } catch (const report::PlotError& error) {
     fmt::print(stderr, "warning: no chart.svg: {}\n", error.what());
   }

@@ -179,6 +179,7 @@ class MpmChart {
     const std::string name =
         fmt::format("{} to {:.4g} s", scene_.scene.name, scene_.scene.end_time);
     const auto render = [&](const report::Figure& figure, const std::string& file) {
+      if (options_.no_plot) return;
       try {
         figure.render_svg(folder.file(file));
         files.push_back(file);

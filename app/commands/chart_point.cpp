@@ -215,9 +215,11 @@ ChartEnd chart_point(const CommonOptions& options, const std::string& file, bool
     const std::vector<point::TangentTest> tangents = point::tangent_convergence();
     folder.write_file("error_map.csv", map_csv(maps));
     folder.write_file("tangent.csv", tangent_csv(tangents));
-    draw(work_figure(points), folder.file("chart.svg"));
-    draw(map_figure(maps), folder.file("error_map.svg"));
-    draw(tangent_figure(tangents), folder.file("tangent.svg"));
+    if (!options.no_plot) {
+      draw(work_figure(points), folder.file("chart.svg"));
+      draw(map_figure(maps), folder.file("error_map.svg"));
+      draw(tangent_figure(tangents), folder.file("tangent.svg"));
+    }
     for (const point::TangentTest& test : tangents) {
       summary["tangent_order"][test.name] = test.order;
       if (speak) fmt::print("{}: its tangent is of order {:.2f}\n", test.name, test.order);

@@ -93,6 +93,7 @@ io::ExitCode check_point_test(input::InputFile& input, const CommonOptions& opti
         "  integration  {}\n",
         input.name(), file.name, law_title(file.law), file.test.path.legs.size(),
         point::name_of(point::method_for(find_law(file.law), file.test.settings.method)));
+  for (const std::string& note : file.notes) fmt::print(stderr, "warning: {}\n", note);
   return io::ExitCode::done;
 }
 

@@ -66,12 +66,14 @@ struct CommonOptions {
   bool resume = false;
   bool quiet = false;
   bool json = false;
+  bool no_plot = false;  ///< --no-plot
 };
 
 void add_set(Verb& verb, CommonOptions& options);
 void add_threads(Verb& verb, CommonOptions& options);
 void add_quiet(Verb& verb, CommonOptions& options);
-/// -o, --seed, --resume, --json and the three above.
+void add_no_plot(Verb& verb, CommonOptions& options);
+/// -o, --seed, --resume, --json and the four above.
 void add_run_options(Verb& verb, CommonOptions& options);
 
 /// "From data/scenes/flat_mu_i.toml with --set grid.h=0.0125": where a resolved input comes from.

@@ -179,10 +179,25 @@ class FitRun {
     return file_.resolution_error * (here.r - there.r);
   }
 
+  /// Rows of the data that the fitted curve does not reach.
+  void tell_rows_beyond(const Eigen::VectorXd& z) {
+    for (std::size_t k = 0; k < file_.targets.size(); ++k) {
+      if (!file_.targets[k].continues) continue;
+      const auto beyond = problem_.predict(k, z).beyond;
+      if (beyond == 0) continue;
+      file_.notes.push_back(
+          fmt::format("{}: {} of {} rows lie beyond the end of the fitted curve "
+                      "and are compared with its straight continuation",
+                      file_.targets[k].name, beyond, file_.targets[k].rows()));
+      if (!options_.quiet) fmt::print(stderr, "note: {}\n", file_.notes.back());
+    }
+  }
+
   void analyse(bool interrupted) {
     const auto& best = result_.best();
     result_.uncertainty = calibration::uncertainty(problem_, best.z, resolution_error(best.z));
     result_.clusters = calibration::clusters(problem_, result_.starts);
+    tell_rows_beyond(best.z);
     if (interrupted || best.failed) return;
     if (file_.profiles)
       for (std::size_t i = 0; i < file_.free.size(); ++i)
@@ -215,6 +230,7 @@ class FitRun {
 
   /// A picture that cannot be drawn is a warning: the figures are in fit.json.
   void draw() const {
+    if (options_.no_plot) return;
     const auto attempt = [&](const char* name, auto&& figure) {
       try {
         figure().render_svg(folder_.file(name));

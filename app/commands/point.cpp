@@ -101,6 +101,8 @@ class PointRun {
     const Json report = summary(input, after.wall_s - before.wall_s, after.cpu_s - before.cpu_s);
     folder.write_file("summary.json", report.dump(2) + "\n");
     draw(folder);
+    if (!options_.quiet)
+      for (const std::string& note : file_.notes) fmt::print(stderr, "warning: {}\n", note);
     tell(folder, report);
     return point::is_failure(outcome.status) ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
@@ -137,6 +139,8 @@ class PointRun {
     s["fraction"] = o.fraction;
     s["method"] = point::name_of(point::method_for(*law_, file_.test.settings.method));
     s["tolerance"] = file_.test.settings.tolerance;
+    s["strain"] = point::name_of(file_.test.path.measure);
+    s["warnings"] = file_.notes;
     s["rows"] = curve_.rows.size();
     s["steps"] = o.counts.steps;
     s["steps_rejected"] = o.counts.rejected;
@@ -176,7 +180,7 @@ class PointRun {
 
   /// A picture that cannot be drawn is a warning, not a failure: the figures are in curve.csv.
   void draw(const io::ResultFolder& folder) const {
-    if (curve_.rows.size() < 2) return;
+    if (options_.no_plot || curve_.rows.empty()) return;
     try {
       report::point_picture(file_, theta_, curve_).render_svg(folder.file("curve.svg"));
     } catch (const report::PlotError& error) {
@@ -194,10 +198,11 @@ class PointRun {
       for (const char* key : {"status", "reason", "rows", "wall_s"}) line[key] = report[key];
       fmt::print("{}\n", line.dump());
     } else if (!options_.quiet) {
-      fmt::print("{}: {} rows by {} in {:.3g} ms{}; {}\n", folder.path().string(),
-                 curve_.rows.size(), report["method"].get<std::string>(),
-                 1e3 * report["wall_s"].get<double>(), failed ? "" : ", " + reason_,
-                 "curve.csv, curve.svg, summary.json");
+      fmt::print(
+          "{}: {} rows by {} in {:.3g} ms{}; {}\n", folder.path().string(), curve_.rows.size(),
+          report["method"].get<std::string>(), 1e3 * report["wall_s"].get<double>(),
+          failed ? "" : ", " + reason_,
+          options_.no_plot ? "curve.csv, summary.json" : "curve.csv, curve.svg, summary.json");
     }
   }
 
@@ -227,6 +232,7 @@ Command add_point(CLI::App& root) {
   verb.required("TEST.toml", *file, "Point test", "TEXT");
   verb.option("-o,--output", options->output, "Result folder (default: results/NAME)", "DIR");
   add_set(verb, *options);
+  add_no_plot(verb, *options);
   add_quiet(verb, *options);
   return {verb.app(), options, [options, file] { return PointRun(*file, *options).run(); }};
 }

@@ -71,6 +71,7 @@ io::ExitCode run_accurately(const RunArguments& arguments) {
   request.resume = options.resume;
   request.quiet = options.quiet;
   request.json = options.json;
+  request.picture = !options.no_plot;
   return run_to_accuracy(request);
 }
 
@@ -96,6 +97,7 @@ io::ExitCode run_file(const RunArguments& arguments) {
   request.picture = report::draw_final_picture;
   request.quiet = options.quiet;
   request.json = options.json;
+  request.picture = !options.no_plot;
   try {
     return study::run_scene(request);
   } catch (const InputError& error) {

@@ -103,7 +103,7 @@ class Maps {
   void make(input::StabilityPart part) {
     const std::string name(input::stability_names[static_cast<std::size_t>(part)]);
     if (parts_.contains(name)) return;
-    report::PartOutput out(folder_, options_.quiet || options_.json);
+    report::PartOutput out(folder_, options_.quiet || options_.json, !options_.no_plot);
     const study::Usage start = study::usage();
     Json figures;
     try {
@@ -175,6 +175,7 @@ Command add_stability(CLI::App& root) {
             "Keep the parts that are finished from the same input");
   add_set(verb, arguments->common);
   add_quiet(verb, arguments->common);
+  add_no_plot(verb, arguments->common);
   return {verb.app(), std::shared_ptr<const CommonOptions>(arguments, &arguments->common),
           [arguments] {
             CommonOptions options = arguments->common;

@@ -1,6 +1,8 @@
 #include "mpm/scene/fill.hpp"
 
 #include <cmath>
+#include <limits>
+#include <map>
 #include <numbers>
 
 namespace repose::mpm {
@@ -47,6 +49,73 @@ void append(PointsOf<dim>& points, const std::array<double, dim>& x, const Body&
   ++points.count;
 }
 
+/// The weight of bodies upon a body, per area [Pa]. Bodies are looked up column by column: those
+/// that stand over a place without a gap, from the body's top to a free surface.
+class Load {
+ public:
+  Load(const Scene& scene, const Body& body, double g)
+      : scene_(scene),
+        body_(body),
+        g_(g),
+        gap_(0.5 * point_spacing(scene)) {}
+
+  /// At (x, z); z counts in space only. The same stack of bodies is summed up once.
+  double at(double x, double z) {
+    std::vector<std::size_t> stack;
+    for (double top = body_.origin[1] + body_.size[1];;) {
+      const std::size_t next = upon(x, z, top);
+      if (next == scene_.bodies.size()) break;
+      stack.push_back(next);
+      top = scene_.bodies[next].origin[1] + scene_.bodies[next].size[1];
+    }
+    const auto [place, is_new] = known_.try_emplace(stack, 0.0);
+    if (is_new)
+      for (std::size_t i = stack.size(); i-- > 0;)
+        place->second = below(scene_.bodies[stack[i]], stack[i], place->second);
+    return place->second;
+  }
+
+ private:
+  /// The body whose base stands at this height over (x, z); the number of bodies if there is none.
+  std::size_t upon(double x, double z, double height) const {
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const Body& other = scene_.bodies[i];
+      const auto spans = [&](std::size_t axis, double at) {
+        return at >= other.origin[axis] && at < other.origin[axis] + other.size[axis];
+      };
+      if (&other == &body_ || std::abs(other.origin[1] - height) > gap_ || !spans(0, x)) continue;
+      if (scene_.dimensions() == 2 && other.disc) continue;  // it touches in a point
+      if (scene_.dimensions() == 3 && !spans(2, z)) continue;
+      if (other.disc) {
+        const double r = std::hypot(x - other.disc->centre[0], z - other.disc->centre[1]);
+        if (r < other.disc->hole || r >= other.disc->radius) continue;
+      }
+      return i;
+    }
+    return scene_.bodies.size();
+  }
+
+  /// The vertical stress below a body that carries `above`.
+  double below(const Body& body, std::size_t index, double above) const {
+    try {
+      const std::unique_ptr<Material> material = make_material(body.law);
+      if (!body.lithostatic)
+        return above + g_ * material->initial(body.initial).density * body.size[1];
+      const int steps = static_cast<int>(std::ceil(body.size[1] / (0.5 * gap_)));
+      return overburden(*material, body.initial.ocr.value_or(1.0), body.initial.K0.value_or(1.0),
+                        g_, body.size[1], steps, above);
+    } catch (const InputError& e) {
+      throw InputError("lithostatic", "body[" + std::to_string(index) +
+                                          "], which stands on this one: " + e.what());
+    }
+  }
+
+  const Scene& scene_;
+  const Body& body_;
+  double g_, gap_;
+  std::map<std::vector<std::size_t>, double> known_;
+};
+
 /// In the box, or in the disc (in space, cylinder) and not in its hole.
 template <int dim>
 bool within_shape(const Body& body, const std::array<double, dim>& x) {
@@ -57,12 +126,13 @@ bool within_shape(const Body& body, const std::array<double, dim>& x) {
 
 }  // namespace
 
-double overburden(const Material& material, double ocr, double K0, double g, double z, int steps) {
+double overburden(const Material& material, double ocr, double K0, double g, double z, int steps,
+                  double above) {
   const auto weight = [&](double vertical) {
     return g * material.density_at(vertical * (1.0 + 2.0 * K0) / 3.0, ocr);
   };
   const double dz = z / steps;
-  double s = 0.0;
+  double s = above;
   for (int k = 0; k < steps; ++k) {
     const double k1 = weight(s);
     const double k2 = weight(s + 0.5 * dz * k1);
@@ -95,7 +165,7 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
 
   const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
   points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
-  std::array<double, dim> spacing;
+  std::array<double, 3> spacing{};
   double volume = 1.0;
   for (std::size_t i = 0; i < dim; ++i) {
     spacing[i] = body.size[i] / static_cast<double>(lattice[i]);
@@ -112,23 +182,37 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   const auto coordinate = [&](std::size_t axis, std::int64_t n) {
     return body.origin[axis] + (static_cast<double>(n) + 0.5) * spacing[axis];
   };
+  // what stands on each column of the lattice
+  std::vector<double> load(static_cast<std::size_t>(lattice[0] * lattice[2]), 0.0);
+  if (body.lithostatic && scene.bodies.size() > 1) {
+    Load bodies(scene, body, g);
+    for (std::int64_t k = 0; k < lattice[2]; ++k)
+      for (std::int64_t i = 0; i < lattice[0]; ++i)
+        load[static_cast<std::size_t>(k * lattice[0] + i)] =
+            within("initial", [&] { return bodies.at(coordinate(0, i), coordinate(2, k)); });
+  }
+  const auto at_depth = [&](double depth, double above) {
+    InitialConditions here = body.initial;
+    here.p = within("initial", [&] {
+      // steps of a quarter spacing: the error of the fourth-order rule is far below round-off of σ
+      const int steps = static_cast<int>(std::ceil(depth / (0.25 * spacing[1])));
+      return overburden(*points.material, body.initial.ocr.value_or(1.0), K0, g, depth, steps,
+                        above) *
+             (1.0 + 2.0 * K0) / 3.0;
+    });
+    return initial(here);
+  };
   for (std::int64_t j = 0; j < lattice[1]; ++j) {
     const double y = coordinate(1, j);
     InitialPoint at = uniform;
-    if (body.lithostatic) {
-      const double depth = body.origin[1] + body.size[1] - y;
-      InitialConditions here = body.initial;
-      here.p = within("initial", [&] {
-        // steps of a quarter spacing: the error of the fourth-order rule is far below round-off of
-        // σ
-        const int steps = static_cast<int>(std::ceil(depth / (0.25 * spacing[1])));
-        return overburden(*points.material, body.initial.ocr.value_or(1.0), K0, g, depth, steps) *
-               (1.0 + 2.0 * K0) / 3.0;
-      });
-      at = initial(here);
-    }
+    double above = std::numeric_limits<double>::quiet_NaN();  // of which `at` is made
     for (std::int64_t k = 0; k < lattice[2]; ++k)
       for (std::int64_t i = 0; i < lattice[0]; ++i) {
+        const double here = load[static_cast<std::size_t>(k * lattice[0] + i)];
+        if (body.lithostatic && here != above) {
+          at = at_depth(body.origin[1] + body.size[1] - y, here);
+          above = here;
+        }
         std::array<double, dim> x{coordinate(0, i), y};
         if constexpr (dim == 3) x[2] = coordinate(2, k);
         if (!within_shape<dim>(body, x)) continue;

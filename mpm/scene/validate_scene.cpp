@@ -378,7 +378,7 @@ void check_space(const Scene& scene) {
 /// What the material says to the state at the base of a lithostatic body.
 InitialPoint lithostatic_base(const Scene& scene, const Body& body, const Material& material) {
   const InitialConditions& given = body.initial;
-  if (given.p || given.v || given.density || given.sigma)
+  if (states_stress(given) || given.v || given.density || given.ocr_v)
     throw InputError("lithostatic",
                      "a lithostatic state follows from the weight: beside it only K0 "
                      "and ocr can be given");

@@ -56,9 +56,8 @@ T length_on_grid(I& integrator, Flow<L, T>& flow, const Readout<T>& readout, con
       LegRun<L, T> run(flow, readout, path, index, time, start, nullptr);
       run.fix_duration(length);
       const LegEnd<T> end = integrator.drive(run, y);
-      return end.status == Status::completed
-                 ? run.quantity(goal.quantity, y, end.elapsed) - T(goal.value)
-                 : T(std::numeric_limits<double>::quiet_NaN());
+      return end.status == Status::completed ? run.reached(goal, y, end.elapsed) - T(goal.value)
+                                             : T(std::numeric_limits<double>::quiet_NaN());
     };
     double before = value(found) * (1.0 - 1e-4), now = value(found);
     double miss_before = value(miss(T(before)));
@@ -118,7 +117,7 @@ Outcome drive_legs(I& integrator, const ElementStart<L, T>& start, const Path& p
   for (std::size_t i = 0; i < 6 + F::m; ++i) y[i] = start.stress_and_state[i];
   for (std::size_t i = F::i_strain; i < F::size; ++i) y[i] = T(0.0);
   if (settings.energy) flow.stored_at_start = flow.stored_energy(y);
-  const Readout<T> readout = make_readout(start, path.frame);
+  Readout<T> readout = make_readout(start, path.frame);
   Outcome& outcome = curve.outcome;
   {  // the start itself is the first row
     LegRun<L, T> first(flow, readout, path, 0, T(0.0), y, &curve.rows);
@@ -130,6 +129,8 @@ Outcome drive_legs(I& integrator, const ElementStart<L, T>& start, const Path& p
   for (int i = 0; i < count; ++i) {
     outcome.leg = i;
     double whole = 0.0;
+    if (!path.legs[static_cast<std::size_t>(i)].spec().continues)
+      readout.stage_strain = F::strain(y);
     const LegEnd<T> end =
         drive_leg<I, L, T>(integrator, flow, readout, path, i, time, y, curve.rows, whole);
     time = time + end.elapsed;

@@ -2,6 +2,7 @@
 
 #include "pointdriver/integrate/simulate.hpp"
 #include "pointdriver/integrate/start.hpp"
+#include "pointdriver/integrate/strength.hpp"
 
 namespace repose::point {
 namespace {
@@ -38,7 +39,7 @@ std::string why(const LawInfo& law, std::span<const double> theta, const PointTe
       const auto& stops = test.path.legs[static_cast<std::size_t>(outcome.leg)].spec().stops;
       const Goal& stop = stops[static_cast<std::size_t>(outcome.stop)];
       return "stopped where " + std::string(column_name(stop.quantity)) + " reached " +
-             number(stop.value);
+             number(stop.value) + (stop.of_stage ? ", counted from the start of the stage" : "");
     }
     case Status::separated:
       return "reached p = p_sep, where the material parts and carries no stress";
@@ -75,6 +76,24 @@ std::string why(const LawInfo& law, std::span<const double> theta, const PointTe
   return "";
 }
 
+/// A stress that the material cannot carry, with the figure; empty if that is not the reason.
+std::string beyond_strength(const LawInfo& law, std::span<const double> theta,
+                            const PointTest& test, const Curve& curve) {
+  const auto strength = strength_exceeded(law, theta, test, curve);
+  if (!strength) return "";
+  const std::string name(column_name(strength->quantity));
+  std::string text =
+      "the stress asked for lies beyond the strength q = " + number(strength->q) + " Pa (";
+  if (strength->quantity != Quantity::q) text += name + " = " + number(strength->carried) + ", ";
+  text += "asked for: " + name + " = " + number(strength->asked);
+  const bool viscous = law.has_stress_memory ? law.state.empty() : true;
+  if (viscous) text += "; found at a strain rate of " + number(strength->rate) + " 1/s";
+  text += ")";
+  if (curve.outcome.status == Status::no_response)
+    text += ": at yield the material softens, and no rate follows the prescribed stress";
+  return text;
+}
+
 }  // namespace
 
 std::string explain(const LawInfo& law, std::span<const double> theta, const PointTest& test,
@@ -84,6 +103,8 @@ std::string explain(const LawInfo& law, std::span<const double> theta, const Poi
   if (outcome.status == Status::completed || outcome.status == Status::bad_initial ||
       outcome.status == Status::unsupported)
     return text;
+  if (std::string told = beyond_strength(law, theta, test, curve); !told.empty())
+    text = std::move(told);
   const Leg& leg = test.path.legs[static_cast<std::size_t>(outcome.leg)];
   return leg.spec().name + ": " + text + "; at " + place(law, theta, test, curve) + " (stage " +
          std::to_string(outcome.leg + 1) + " of " + std::to_string(test.path.legs.size()) +

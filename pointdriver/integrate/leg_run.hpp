@@ -46,7 +46,7 @@ class LegRun {
     bool forward = true;
     if (spec.goal) {
       flow_.use(leg_.control(true));  // read() may need a control for D; the sign is not known yet
-      const T now = quantity(spec.goal->quantity, start);
+      const T now = reached(*spec.goal, start);
       forward = value(now) <= spec.goal->value;
       if (spec.goal_is_event) {
         const double rate = spec.rows[static_cast<std::size_t>(spec.driver)].rate;
@@ -66,7 +66,7 @@ class LegRun {
     if (spec.goal && spec.goal_is_event)
       add({EventKind::goal, 0, forward ? 1.0 : -1.0, *spec.goal});
     for (std::size_t i = 0; i < spec.stops.size(); ++i) {
-      const double gap = value(quantity(spec.stops[i].quantity, start)) - spec.stops[i].value;
+      const double gap = value(reached(spec.stops[i], start)) - spec.stops[i].value;
       add({EventKind::stop, static_cast<int>(i), gap < 0.0 ? 1.0 : (gap > 0.0 ? -1.0 : 0.0),
            spec.stops[i]});
     }
@@ -97,7 +97,7 @@ class LegRun {
       const T p = (y[0] + y[1] + y[2]) * T(-1.0 / 3.0);
       return T(flow_.contact_pressure()) - p;
     }
-    return e.sign * (quantity(e.goal.quantity, y, t) - T(e.goal.value));
+    return e.sign * (reached(e.goal, y, t) - T(e.goal.value));
   }
 
   /// The branch event: F in the elastic branch; in the plastic one unloading, −Ḟ of the elastic
@@ -130,7 +130,7 @@ class LegRun {
     for (int i = 0; i < n_events_; ++i) {
       Event& e = events_[static_cast<std::size_t>(i)];
       if (e.sign != 0.0 || e.kind != EventKind::stop) continue;
-      const double gap = value(quantity(e.goal.quantity, y, t)) - e.goal.value;
+      const double gap = value(reached(e.goal, y, t)) - e.goal.value;
       e.sign = gap < 0.0 ? 1.0 : (gap > 0.0 ? -1.0 : 0.0);
     }
   }
@@ -215,6 +215,17 @@ class LegRun {
       if (flow_.respond(y, flow_.branch, D, stress_rate, state_rate)) row.strain_rate = D;
     }
     return row;
+  }
+
+  /// What a goal compares with its value: a strain may count from the start of the stage.
+  T reached(const Goal& goal, const Y& y, const T& t = T(0.0)) const {
+    if (!goal.of_stage && goal.measure == StrainMeasure::logarithmic)
+      return quantity(goal.quantity, y, t);
+    Row<T> row = sample(y, t);
+    if (goal.of_stage) row.strain = row.strain - readout_.stage_strain;
+    Readout<T> readout = readout_;
+    readout.measure = goal.measure;
+    return read(goal.quantity, row, readout);
   }
 
   T quantity(Quantity q, const Y& y, const T& t = T(0.0)) const {

@@ -1,8 +1,19 @@
 #include "pointdriver/integrate/simulate.hpp"
 
+#include <cstdio>
+
 #include "pointdriver/integrate/start.hpp"
 
 namespace repose::point {
+namespace {
+
+std::string digits(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", x);
+  return text.data();
+}
+
+}  // namespace
 
 Outcome simulate(const LawInfo& law, std::span<const double> theta, const PointTest& test,
                  Curve& curve) {
@@ -24,6 +35,7 @@ void read_column(const LawInfo& law, std::span<const double> theta, const PointT
                  const Curve& curve, Quantity quantity, std::vector<double>& values) {
   Readout<double> readout;
   readout.frame = test.path.frame;
+  readout.measure = test.path.measure;
   if (const int i = parameter_index(law.parameters, "rho_p"); i >= 0)
     readout.rho_p = theta[static_cast<std::size_t>(i)];
   if (const int i = parameter_index(law.parameters, "d"); i >= 0)
@@ -70,9 +82,31 @@ std::optional<Method> find_method(std::string_view name) {
   return std::nullopt;
 }
 
+double start_value(const LawInfo& law, std::span<const double> theta, const PointTest& test,
+                   Quantity quantity) {
+  return visit_law(law, [&]<class L>(L) {
+    const ElementStart<L, double> start = plain_start<L>(theta, test);
+    Row<double> row;
+    for (std::size_t i = 0; i < 6; ++i) row.stress.c[i] = start.stress_and_state[i];
+    for (std::size_t i = 0; i < L::state.size(); ++i) row.state[i] = start.stress_and_state[6 + i];
+    row.density = start.density;
+    return read(quantity, row, make_readout(start, test.path.frame));
+  });
+}
+
 void check_start(const LawInfo& law, std::span<const double> theta, const PointTest& test) {
   visit_law(law, [&]<class L>(L) {
     const ElementStart<L, double> start = plain_start<L>(theta, test);
+    if (const StartClaim* claim = contradicted(test.path, start.stress_and_state)) {
+      const bool stress = claim->of.stress != std::array<double, 6>{};
+      throw InputError("history", claim->table + ": the first row says " + claim->column + " = " +
+                                      digits(claim->value) + (stress ? " Pa" : "") +
+                                      ", and the test starts at " +
+                                      digits(claimed_quantity(*claim, start.stress_and_state)) +
+                                      (stress ? " Pa: give the same stress in [initial]"
+                                              : ": strains are zero at the start") +
+                                      ", or history_is = \"change\" if only the differences count");
+    }
     if (!suits(test.path, start.stress_and_state))
       throw InputError(test.initial.sigma ? "sigma" : "initial",
                        "this test needs an initial stress with equal radial stresses (xx = zz) and "

@@ -50,4 +50,9 @@ std::optional<Method> find_method(std::string_view name);
 /// suit the path (a triaxial test needs equal radial stresses and no shear).
 void check_start(const LawInfo& law, std::span<const double> theta, const PointTest& test);
 
+/// A quantity of the start, before anything is driven. Errors: InputError where the law cannot
+/// start from the conditions.
+double start_value(const LawInfo& law, std::span<const double> theta, const PointTest& test,
+                   Quantity quantity);
+
 }  // namespace repose::point

@@ -42,8 +42,24 @@ ElementStart<L, double> plain_start(std::span<const double> theta, const PointTe
   return start;
 }
 
+/// What a claim says of a start under this stress (tension positive): Σ stress_i σ_i.
+inline double claimed_quantity(const StartClaim& claim, std::span<const double> stress) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 6; ++i) sum += claim.of.stress[i] * (i < 3 ? -stress[i] : stress[i]);
+  return sum;
+}
+
+/// The first claim about the start that this initial stress contradicts; nullptr if none.
+inline const StartClaim* contradicted(const Path& path, std::span<const double> stress) {
+  for (const StartClaim& claim : path.start_claims)
+    if (!(std::abs(claimed_quantity(claim, stress) - claim.value) <= claim.tolerance))
+      return &claim;
+  return nullptr;
+}
+
 /// Does the initial stress suit the path?
 inline bool suits(const Path& path, std::span<const double> stress) {
+  if (contradicted(path, stress) != nullptr) return false;
   if (!path.needs_axisymmetry) return true;
   double size = 0.0;
   for (std::size_t i = 0; i < 6; ++i) size = std::max(size, std::abs(stress[i]));

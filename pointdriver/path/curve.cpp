@@ -23,6 +23,16 @@ constexpr std::array<std::string_view, quantity_count> names{"time_s",
                                                              "shear_rate_per_s"};
 }
 
+std::string_view name_of(StrainMeasure measure) {
+  return measure == StrainMeasure::logarithmic ? "logarithmic" : "engineering";
+}
+
+double logarithmic_strain(Quantity quantity, double engineering) {
+  if (quantity != Quantity::eps_a && quantity != Quantity::eps_r && quantity != Quantity::eps_v)
+    return engineering;
+  return engineering < 1.0 ? -std::log1p(-engineering) : std::numeric_limits<double>::quiet_NaN();
+}
+
 std::string_view column_name(Quantity quantity) {
   return names[static_cast<std::size_t>(quantity)];
 }

@@ -46,6 +46,11 @@ enum class Frame : std::uint8_t {
   general,       ///< q = √(3/2 s:s), ε_q = √(2/3 e:e)
 };
 
+/// How a strain is measured. Inside, all are logarithmic; where a path or a table counts in
+/// engineering strains, ε = 1 − exp(−ε_log): change of length over the length at the start of the
+/// test (of the stage, for a stage's own strain), change of volume over the volume there.
+enum class StrainMeasure : std::uint8_t { logarithmic, engineering };
+
 /// Columns of curve.csv. Compression positive; units as in the names.
 enum class Quantity : std::uint8_t {
   time,
@@ -70,6 +75,12 @@ enum class Quantity : std::uint8_t {
 };
 inline constexpr std::size_t quantity_count = 19;
 
+std::string_view name_of(StrainMeasure measure);
+
+/// The logarithmic strain of an engineering one, −ln(1 − ε), for eps_a, eps_r and eps_v; a shear
+/// strain γ is the same in both. NaN where a compression of 100 % or more is asked for.
+double logarithmic_strain(Quantity quantity, double engineering);
+
 /// "eps_a", "p_Pa", ...: the column's name in curve.csv.
 std::string_view column_name(Quantity quantity);
 /// The quantity of a column name; a missing unit suffix is accepted ("q" for "q_Pa").
@@ -84,7 +95,17 @@ struct Readout {
   int p_c_index = -1;                                 ///< state variable "p_c", -1 if none
   T sigma_r_start{0.0};                               ///< radial stress where u is 0 [Pa]
   int first_undrained = 0;                            ///< before this leg u is 0
+  StrainMeasure measure = StrainMeasure::logarithmic;  ///< of ε_a, ε_r, ε_v and, with an axis, ε_q
+  Sym<T, 6> stage_strain{};  ///< where the strains of the present stage count from (log.)
 };
+
+/// A normal or volume strain (compression positive) as the readout measures it.
+template <class T>
+T measured(const T& logarithmic, const Readout<T>& readout) {
+  using std::exp;
+  return readout.measure == StrainMeasure::logarithmic ? logarithmic
+                                                       : T(T(1.0) - exp(-logarithmic));
+}
 
 /// Value of a quantity in a row; NaN where the law or the test has no such quantity.
 template <class T>
@@ -98,12 +119,16 @@ T read(Quantity quantity, const Row<T>& row, const Readout<T>& readout) {
     case Quantity::time:
       return row.time;
     case Quantity::eps_a:
-      return -e[1];
+      return measured(T(-e[1]), readout);
     case Quantity::eps_r:
-      return T(-0.5) * (e[0] + e[2]);
+      return measured(T(T(-0.5) * (e[0] + e[2])), readout);
     case Quantity::eps_v:
-      return -trace(e);
+      return measured(T(-trace(e)), readout);
     case Quantity::eps_q:
+      // engineering: what a laboratory plots, from the measured ε_a and ε_v
+      if (readout.frame == Frame::axisymmetric && readout.measure == StrainMeasure::engineering)
+        return read(Quantity::eps_a, row, readout) -
+               T(1.0 / 3.0) * read(Quantity::eps_v, row, readout);
       if (readout.frame == Frame::axisymmetric)
         return T(2.0 / 3.0) * (T(0.5) * (e[0] + e[2]) - e[1]);
       return T(2.0 / std::sqrt(3.0)) * shear_norm(deviator(e));  // √(2/3 e:e)

@@ -1,6 +1,8 @@
 #include "pointdriver/path/history.hpp"
 
 #include <charconv>
+#include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -39,6 +41,12 @@ double number(std::string_view text, const std::string& name, int line, const st
         name, line,
         "column " + column + " holds \"" + std::string(text) + "\", and a finite number is needed");
   return x;
+}
+
+std::string text_of(double x) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", x);
+  return text.data();
 }
 
 /// A column's meaning: one constraint row per entry, scaled to SI.
@@ -161,7 +169,40 @@ Table read_table(const std::filesystem::path& file) {
   return parse_table(text, file.string());
 }
 
-Path history_path(const Table& table) {
+namespace {
+
+/// What a column holds in SI and logarithmic strain.
+std::vector<double> column_values(const Table& table, std::size_t c, const Prescribed& p,
+                                  StrainMeasure measure, double max_strain) {
+  std::vector<double> values = table.values[c];
+  const std::string& column = table.columns[c];
+  const bool stress = p.rows[0].stress != std::array<double, 6>{};
+  const bool normal = !stress && column.find("xy") == std::string::npos &&
+                      column.find("yz") == std::string::npos &&
+                      column.find("zx") == std::string::npos && !column.starts_with("gamma");
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    double& x = values[k];
+    x *= p.factor;
+    if (stress) continue;
+    if (!(std::abs(x) <= max_strain))
+      fail(table.name, table.lines[k],
+           column + " = " + text_of(x) + " is a strain of " + text_of(100.0 * x) +
+               " %, beyond integration.max_strain = " + text_of(max_strain) +
+               (p.factor == 1.0 ? ": a column in per cent is named " + column + "_percent"
+                                : std::string()));
+    if (measure == StrainMeasure::engineering && normal) {
+      if (!(x < 1.0))
+        fail(table.name, table.lines[k],
+             column + " = " + text_of(x) + ": an engineering strain is below 1 (100 %)");
+      x = -std::log1p(-x);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+Path history_path(const Table& table, HistoryIs is, StrainMeasure measure, double max_strain) {
   const auto time = std::find(table.columns.begin(), table.columns.end(), "time_s");
   if (time == table.columns.end()) throw TableError(table.name + ": column time_s is missing");
   const auto time_column = static_cast<std::size_t>(time - table.columns.begin());
@@ -169,12 +210,18 @@ Path history_path(const Table& table) {
   if (t.size() < 2) throw TableError(table.name + ": a history needs at least two rows");
 
   std::vector<std::pair<Constraint, std::size_t>> rows;  // with the column that drives it
-  std::vector<double> factor(table.columns.size(), 1.0);
+  std::vector<std::vector<double>> values(table.columns.size());
+  std::vector<StartClaim> claims;
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (c == time_column) continue;
     const Prescribed p = meaning(table, table.columns[c]);
-    factor[c] = p.factor;
+    values[c] = column_values(table, c, p, measure, max_strain);
     for (const Constraint& row : p.rows) rows.emplace_back(row, c);
+    double largest = 0.0;
+    for (const double x : values[c]) largest = std::max(largest, std::abs(x));
+    if (is == HistoryIs::absolute)
+      claims.push_back({p.rows[0], values[c][0], 1e-4 * largest, table.columns[c],
+                        table.name + ":" + std::to_string(table.lines[0])});
   }
   for (std::size_t shear = 3; shear < 6; ++shear)
     if (!involves(rows, shear)) {
@@ -200,14 +247,13 @@ Path history_path(const Table& table) {
       const auto& [row, column] = rows[r];
       leg.rows[r] = row;
       leg.rows[r].rate =
-          std::isnan(row.rate)
-              ? 0.0
-              : factor[column] * (table.values[column][k + 1] - table.values[column][k]) / dt;
+          std::isnan(row.rate) ? 0.0 : (values[column][k + 1] - values[column][k]) / dt;
     }
     legs.push_back(std::move(leg));
   }
   Path path;
-  path.frame = Frame::general;
+  path.measure = measure;
+  path.start_claims = std::move(claims);
   path.wants_strain_rate = true;
   const bool shears =
       involves({rows.begin(), rows.end()}, 3) &&

@@ -160,6 +160,7 @@ LegSpec leg_of(const Stage& stage) {
   LegSpec leg;
   leg.points = stage.points;
   leg.stops = stage.stops;
+  leg.continues = stage.continues;
   leg.name = name_of(stage.kind);
   if (stage.kind == Kind::triaxial || stage.kind == Kind::simple_shear)
     leg.name = std::string(name_of(stage.condition)) + " " + leg.name;
@@ -208,7 +209,8 @@ Path path_of(const std::vector<Stage>& stages) {
   return path;
 }
 
-std::vector<Stage> cycles(const Stage& half, Quantity quantity, double lower, double upper, int n) {
+std::vector<Stage> cycles(const Stage& half, Quantity quantity, double lower, double upper, int n,
+                          bool of_stage) {
   if (n < 1 || n > 10000) throw InputError("cycles", "cycles must be from 1 to 10000");
   if (!(lower < upper))
     throw InputError("cycles", "the lower limit of a cycle must be < the upper");
@@ -216,7 +218,8 @@ std::vector<Stage> cycles(const Stage& half, Quantity quantity, double lower, do
   for (int i = 0; i < n; ++i)
     for (const double limit : {upper, lower}) {
       Stage stage = half;
-      stage.goal = Goal{quantity, limit};
+      stage.goal = Goal{quantity, limit, of_stage};
+      stage.continues = !stages.empty();
       stages.push_back(stage);
     }
   return stages;

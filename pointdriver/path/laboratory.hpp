@@ -42,6 +42,7 @@ struct Stage {
   double strain_limit = 1.0;  ///< bound while a goal is looked for
   int points = 200;
   std::vector<Goal> stops;
+  bool continues = false;  ///< strains go on counting from the start of the stage before
 };
 
 /// The leg of a stage. Errors: InputError for combinations that make no test.
@@ -51,8 +52,11 @@ LegSpec leg_of(const Stage& stage);
 /// kind; stages of another kind may follow (isotropic consolidation, then shear).
 Path path_of(const std::vector<Stage>& stages);
 
-/// n cycles between two values of a quantity: n times (upper, lower), each half cycle a stage.
-std::vector<Stage> cycles(const Stage& half, Quantity quantity, double lower, double upper, int n);
+/// n cycles between two values of a quantity: n times (upper, lower). All half cycles are one
+/// stage: with `of_stage`, limits that are strains count from where the cycles began, as a gauge
+/// that is set to zero before the first one shows them.
+std::vector<Stage> cycles(const Stage& half, Quantity quantity, double lower, double upper, int n,
+                          bool of_stage = false);
 
 /// Simple shear at `count` rates spaced evenly in the logarithm, each for `shear_strain`, one row
 /// per rate at its end.

@@ -15,6 +15,8 @@ namespace repose::point {
 struct Goal {
   Quantity quantity = Quantity::time;
   double value = 0.0;
+  bool of_stage = false;  ///< a strain that counts from the start of its stage, not of the test
+  StrainMeasure measure = StrainMeasure::logarithmic;  ///< of a strain located on the way
 };
 
 /// One leg. It ends after `duration`, or when the goal is reached:
@@ -31,8 +33,9 @@ struct LegSpec {
   double strain_limit = 1.0;  ///< of the driver, for a goal located as an event [-]
   double duration = 0.0;      ///< without goal [s]
   int points = 1;             ///< rows of output, evenly spaced in time
-  std::vector<Goal> stops;    ///< conditions that end the whole test
-  std::string name;           ///< for messages: "drained extension"
+  bool continues = false;   ///< belongs to the stage of the leg before: its strains go on counting
+  std::vector<Goal> stops;  ///< conditions that end the whole test
+  std::string name;         ///< for messages: "drained extension"
 };
 
 /// A leg with its control prepared for both signs of the driver.
@@ -48,12 +51,24 @@ class Leg {
   std::array<Control, 2> control_;
 };
 
+/// What a test says about its own start: Σ stress_i σ_i (no sum over strain: that is zero at the
+/// start) has this value.
+struct StartClaim {
+  Constraint of;
+  double value = 0.0;      ///< [Pa], or [-] where `of` holds strain
+  double tolerance = 0.0;  ///< in the same unit
+  std::string column;      ///< for messages
+  std::string table;
+};
+
 struct Path {
   std::vector<Leg> legs;
   Frame frame = Frame::general;
-  bool undrained = false;          ///< report u
-  int first_undrained = 0;         ///< the leg at whose start the excess pore pressure is 0
-  bool wants_strain_rate = false;  ///< rows carry D (for γ̇ and I)
+  StrainMeasure measure = StrainMeasure::logarithmic;  ///< in which strains are read off the curve
+  std::vector<StartClaim> start_claims;  ///< of a history in absolute values: its first row
+  bool undrained = false;                ///< report u
+  int first_undrained = 0;               ///< the leg at whose start the excess pore pressure is 0
+  bool wants_strain_rate = false;        ///< rows carry D (for γ̇ and I)
   bool needs_axisymmetry = false;  ///< the initial stress must have σ_xx = σ_zz and no shear
   bool needs_isotropy = false;     ///< the initial stress must be isotropic
   /// Upper bound of the number of rows that a completed path writes.

@@ -72,6 +72,9 @@ const words = {
 const whole_names = {density: ["density", "kg/m³"], density_min: ["least density", "kg/m³"], density_max: ["largest density", "kg/m³"],
   momentum_x: ["momentum x", "kg/s"], momentum_y: ["momentum y", "kg/s"], angular_momentum: ["angular momentum", "kg m/s"]};
 
+/// Which strain the columns eps_... hold, where all results say the same: "logarithmic".
+let strain_measure = "";
+
 /// "q_Pa" → {name: "q", unit: "kPa", factor: 1e-3}; "eps_a" → ε with subscript a, in %.
 function label(column) {
   if (whole_names[column]) return made(whole_names[column][0], "", whole_names[column][1], 1);
@@ -83,6 +86,7 @@ function label(column) {
   const [head, ...rest] = base.split("_");
   if (greek[head] && rest.length < 2) {
     if (!found && (head.endsWith("eps") || head === "gamma")) [unit, factor] = ["%", 100];
+    if (unit === "%" && head === "eps" && strain_measure) unit = `${strain_measure}, %`;
     return made(greek[head], rest.join(" "), unit, factor);
   }
   if (head.length === 1 && rest.length === 1 && rest[0].length <= 3) return made(head, rest[0], unit, factor);

@@ -183,6 +183,8 @@ function build() {
   kinds.sort((a, b) => (order.indexOf(a) + 1 || 99) - (order.indexOf(b) + 1 || 99));
   const sections = kinds.map((kind) => [kind, data.results.filter((r) => r.kind === kind)]);
   const versions = [...new Set(data.results.map(version))];
+  const measures = new Set(data.results.flatMap((r) => [r.summary.strain, ...(r.fit?.targets ?? []).map((t) => t.strain)]).filter(Boolean));
+  if (measures.size === 1) [strain_measure] = measures;
   fill(document.getElementById("page"), {}, [
     el("header", {class: "top"}, el("div", {class: "mark"}, "repose report"), el("h1", {}, data.title),
       sections.length > 1 ? el("nav", {"aria-label": "Kinds of results"}, sections.map(([kind, results]) => el("a", {href: `#kind-${kind}`}, `${(kind_names[kind] ?? [kind, kind])[results.length > 1 ? 1 : 0]}${results.length > 1 ? ` (${results.length})` : ""}`))) : null),

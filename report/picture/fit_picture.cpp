@@ -20,10 +20,13 @@ std::vector<double> scaled(const VectorXd& v, double factor) {
 }
 
 /// A column's name in a picture and the factor from SI: "q_Pa" → ("q (kPa)", 1e-3).
-std::pair<std::string, double> label(const std::string& column) {
+/// strain: which strain a strain is.
+std::pair<std::string, double> label(const std::string& column, const std::string& strain) {
   if (column.ends_with("_Pa"))
     return {fmt::format("{} (kPa)", column.substr(0, column.size() - 3)), 1e-3};
-  if (column.starts_with("eps_")) return {fmt::format("eps_{{{}}} (%)", column.substr(4)), 100.0};
+  if (column.starts_with("eps_"))
+    return {fmt::format("eps_{{{}}} ({}%)", column.substr(4), strain.empty() ? "" : strain + ", "),
+            100.0};
   if (column == "gamma") return {"gamma (%)", 100.0};
   if (const auto unit = column.rfind('_'); unit != std::string::npos && column != "rho_0")
     return {fmt::format("{} ({})", column.substr(0, unit), column.substr(unit + 1)), 1.0};
@@ -75,7 +78,7 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
     const auto& t = file.targets[k];
     const MatrixXd sd = prediction_sd(problem, result, k);
     const MatrixXd simulated = problem.predict(k, result.best().z).simulated;
-    const auto [x_label, x_factor] = label(t.x_name);
+    const auto [x_label, x_factor] = label(t.x_name, file.about[k].strain);
     // strains, times and places are read evenly; pressures, rates and inertial numbers by decades
     const bool even = t.x_name.starts_with("eps_") || t.x_name == "time_s" || t.x_name == "x_m";
     const bool log_x = !even && t.x.minCoeff() > 0.0 && t.x.maxCoeff() > 8.0 * t.x.minCoeff();
@@ -85,7 +88,7 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
     const bool ordered = std::is_sorted(x.begin(), x.end());
     for (std::size_t c = 0; c < t.channels.size(); ++c) {
       const auto col = static_cast<Index>(c);
-      const auto [y_label, factor] = label(t.channels[c].name);
+      const auto [y_label, factor] = label(t.channels[c].name, file.about[k].strain);
       const VectorXd s = simulated.col(col), b = result.uncertainty.quantile * sd.col(col);
       Axes& axes = figure.add_axes();
       axes.title = t.name + (t.held_out ? " (held out, predicted)" : "");

@@ -30,6 +30,10 @@ class Source {
     const int i = point::parameter_index(law_.parameters, name);
     return i < 0 ? std::nan("") : theta_[static_cast<std::size_t>(i)];
   }
+  /// "ε_{a} (logarithmic, %)"
+  std::string strain_label(std::string_view symbol) const {
+    return fmt::format("{} ({}, %)", symbol, point::name_of(test_.path.measure));
+  }
   bool has_p_c() const { return point::state_index(law_.state, "p_c") >= 0; }
   const LawInfo& law() const { return law_; }
 
@@ -69,11 +73,11 @@ void stress_path(Figure& figure, const Source& source) {
   axes.y.label = "q (kPa)";
   const auto p = source.column(Quantity::p, kPa);
   const auto q = source.column(Quantity::q, kPa);
-  const bool extension = *std::min_element(q.begin(), q.end()) < -1e-6 * largest(p);
+  const bool extension = !q.empty() && *std::min_element(q.begin(), q.end()) < -1e-6 * largest(p);
   const double M = source.parameter("M");
   if (std::isfinite(M)) {
     double reach = 1.05 * largest(p);
-    if (source.has_p_c()) {
+    if (source.has_p_c() && !p.empty()) {
       const double shift =
           std::isfinite(source.parameter("p_shift")) ? kPa * source.parameter("p_shift") : 0.0;
       const auto p_c = source.column(Quantity::p_c, kPa);
@@ -96,18 +100,18 @@ void against_axial_strain(Figure& figure, const Source& source, bool undrained) 
   const auto eps_a = source.column(Quantity::eps_a, percent);
   Axes& stress = figure.add_axes();
   stress.title = "stress and strain";
-  stress.x.label = "ε_{a} (%)";
+  stress.x.label = source.strain_label("ε_{a}");
   stress.y.label = "q (kPa)";
   stress.line("", eps_a, source.column(Quantity::q, kPa), {Colour::blue});
   Axes& volume = figure.add_axes();
-  volume.x.label = "ε_{a} (%)";
+  volume.x.label = source.strain_label("ε_{a}");
   if (undrained) {
     volume.title = "excess pore pressure";
     volume.y.label = "u (kPa)";
     volume.line("", eps_a, source.column(Quantity::u, kPa), {Colour::vermillion});
   } else {
     volume.title = "volume (compression positive)";
-    volume.y.label = "ε_{v} (%)";
+    volume.y.label = source.strain_label("ε_{v}");
     volume.line("", eps_a, source.column(Quantity::eps_v, percent), {Colour::vermillion});
   }
 }
@@ -188,7 +192,7 @@ void shear_panels(Figure& figure, const Source& source) {
     Axes& axes = figure.add_axes();
     axes.title = "volume (compression positive)";
     axes.x.label = "γ (%)";
-    axes.y.label = "ε_{v} (%)";
+    axes.y.label = source.strain_label("ε_{v}");
     axes.line("", gamma, source.column(Quantity::eps_v, percent), {Colour::vermillion});
   }
 }

@@ -45,22 +45,38 @@ std::string plain(double value) {
   return fmt::format("{:g}", value);
 }
 
+/// What is left where no step fits.
+std::vector<Tick> ends(double lower, double upper) {
+  std::vector<Tick> ticks;
+  for (const double value : {lower, upper})
+    if (std::isfinite(value) && (ticks.empty() || value != ticks.back().value))
+      ticks.push_back({value, fmt::format("{:.4g}", value), false});
+  return ticks;
+}
+
 }  // namespace
 
 std::vector<Tick> linear_ticks(double lower, double upper, int target) {
+  const double largest = std::max(std::abs(lower), std::abs(upper));
+  // Steps are counted in doubles: below 2⁻⁴⁰ of the largest value a count has no room for 1e-9.
+  if (!(upper - lower > 1e-12 * largest) || !std::isfinite(upper - lower))
+    return ends(lower, upper);
   double step = nice_step(upper - lower, target);
   const auto first_of = [&](double s) { return std::ceil(lower / s - 1e-9); };
   const auto last_of = [&](double s) { return std::floor(upper / s + 1e-9); };
   // From 1, 2, 5 to the next smaller of them: 0.39 lies below each ratio and above the one after.
-  while (last_of(step) - first_of(step) < 1.0) step = nice_step(step * 0.39, 1);
+  for (int k = 0; k < 4 && last_of(step) - first_of(step) < 1.0; ++k)
+    step = nice_step(step * 0.39, 1);
+  const double count = last_of(step) - first_of(step);
+  if (!(count >= 1.0 && count < 1000.0)) return ends(lower, upper);
 
-  const double largest = std::max(std::abs(lower), std::abs(upper));
   const int exponent = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
   const bool scientific = exponent >= 5 || exponent <= -4;
   const double unit = scientific ? std::pow(10.0, exponent) : 1.0;
   const int decimals = decimals_of(step / unit);
   std::vector<Tick> ticks;
-  for (double k = first_of(step); k <= last_of(step); k += 1.0) {
+  for (int i = 0; i <= static_cast<int>(count); ++i) {
+    const double k = first_of(step) + i;
     const double value = k * step;
     std::string label = fixed(value / unit, decimals);
     if (scientific) label = k == 0.0 ? "0" : label + "×" + power_of_ten(exponent);

@@ -14,8 +14,9 @@ struct Tick {
 };
 
 /// Ticks at 1, 2 or 5 times a power of ten within [lower, upper], at most about `target` of them
-/// and at least two. Large and small numbers share one power of ten: 2×10^{5}. Requires finite
-/// lower < upper.
+/// and at least two. Large and small numbers share one power of ten: 2×10^{5}. A range so narrow
+/// that its ends differ in the last few bits only, or that is empty or not finite, has a tick at
+/// each end that is finite.
 std::vector<Tick> linear_ticks(double lower, double upper, int target);
 
 /// Ticks of a logarithmic axis: the powers of ten, with 2 to 9 times them as minor ticks; labels at

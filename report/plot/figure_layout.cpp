@@ -14,7 +14,8 @@ namespace repose::report {
 
 namespace {
 
-constexpr double bar_width = 14.0;              // of a colour bar
+constexpr double largest_drawn = 1e300, smallest_drawn = 1e-300;  // rooms and ratios stay doubles
+constexpr double bar_width = 14.0;                                // of a colour bar
 constexpr double bar_gap = 18.0;                // between the plotting area and the bar
 constexpr double tick_gap = 15.0;               // between an upright axis and its numbers
 constexpr double tick_line = 27.0;              // what ticks and their numbers take below an axis
@@ -46,7 +47,7 @@ class Extent {
   explicit Extent(AxisScale scale) : scale_(scale) {}
   void include(std::span<const double> values) {
     for (const double value : values) {
-      if (!std::isfinite(value) || (scale_ == AxisScale::logarithmic && value <= 0.0)) continue;
+      if (!drawable(value, scale_)) continue;
       lower_ = std::min(lower_, value);
       upper_ = std::max(upper_, value);
     }
@@ -80,18 +81,23 @@ AxisView view_of(const Axis& axis, const Extent& data, double padding) {
   double upper = data.empty() ? (logarithmic ? 10.0 : 1.0) : data.upper();
   lower = axis.lower.value_or(lower);
   upper = axis.upper.value_or(upper);
-  // All data alike: a range around them that shows it.
-  if (lower == upper) {
-    const double around = lower == 0.0 ? 1.0 : 0.05 * std::abs(lower);
+  // All data alike but for round-off: a range around them that shows it.
+  const double largest = std::max(std::abs(lower), std::abs(upper));
+  if (!(upper - lower > 1e-9 * largest) && lower <= upper && !(axis.lower && axis.upper)) {
+    const double around = largest < smallest_drawn ? 1.0 : 0.05 * largest;
     if (!axis.lower) lower = logarithmic ? lower / 1.1 : lower - around;
     if (!axis.upper) upper = logarithmic ? upper * 1.1 : upper + around;
   }
   view.lower = lower;
   view.upper = upper;
   if (logarithmic && padding > 0.0) {
-    const double room = std::pow(upper / lower, padding);
-    if (!axis.lower) view.lower = lower / room;
-    if (!axis.upper) view.upper = upper * room;
+    // wide ranges in logarithms: their ratio has no double
+    const double ratio = upper / lower;
+    const double room = std::isfinite(ratio)
+                            ? std::pow(ratio, padding)
+                            : std::exp(padding * (std::log(upper) - std::log(lower)));
+    if (!axis.lower) view.lower = std::max(lower / room, 1e-305);
+    if (!axis.upper) view.upper = std::min(upper * room, 1e305);
   } else if (padding > 0.0) {
     const double room = padding * (upper - lower);
     const bool from_zero = lower >= 0.0 && lower < 0.1 * upper;
@@ -100,6 +106,13 @@ AxisView view_of(const Axis& axis, const Extent& data, double padding) {
     if (!axis.upper) view.upper = to_zero ? 0.0 : upper + room;
   }
   check_range(view);
+  // gnuplot is given nine digits and compares ranges with constants of its own: what is very large,
+  // very small or very narrow is handed to it as places from 0 to 1
+  const double size = std::max(std::abs(view.lower), std::abs(view.upper));
+  view.by_fraction =
+      logarithmic
+          ? view.lower < 1e-30 || view.upper > 1e30 || view.upper < view.lower * (1.0 + 1e-6)
+          : size > 1e30 || view.upper - view.lower < 1e-30 || view.upper - view.lower < 1e-6 * size;
   return view;
 }
 
@@ -136,8 +149,9 @@ PanelView view_of(const Axes& axes, const Figure& figure) {
       throw std::logic_error("figure: equal aspect needs linear axes");
     const double dx = panel.x.upper - panel.x.lower, dy = panel.y.upper - panel.y.lower;
     const double scale = std::min(panel.area.width / dx, panel.area.height / dy);
-    panel.area.width = scale * dx;
-    panel.area.height = scale * dy;
+    constexpr double least = 4.0;  // of two lengths that differ by more the shorter is a line
+    panel.area.width = std::max(least, scale * dx);
+    panel.area.height = std::max(least, scale * dy);
   }
   add_ticks(panel.x, panel.area.width, 62.0);
   add_ticks(panel.y, panel.area.height, 46.0);
@@ -253,7 +267,14 @@ double text_width(std::string_view text, double size_px) {
   return 0.53 * size_px * static_cast<double>(letters_in(text));
 }
 
+bool drawable(double value, AxisScale scale) {
+  return std::abs(value) <= largest_drawn &&
+         (scale == AxisScale::linear || value >= smallest_drawn);
+}
+
 double AxisView::fraction(double value) const {
+  if (scale == AxisScale::logarithmic && by_fraction)
+    return (std::log(value) - std::log(lower)) / (std::log(upper) - std::log(lower));
   if (scale == AxisScale::logarithmic) return std::log(value / lower) / std::log(upper / lower);
   return (value - lower) / (upper - lower);
 }

@@ -23,9 +23,14 @@ std::size_t letters_in(std::string_view text);
 /// About as wide as sans-serif text comes out, in pixels.
 double text_width(std::string_view text, double size_px);
 
+/// Can a value be shown? What is not finite cannot, nor what is not positive on a logarithmic axis,
+/// nor what lies beyond 1e±300.
+bool drawable(double value, AxisScale scale);
+
 /// An axis with everything that Axis leaves open decided.
 struct AxisView {
   double lower = 0.0, upper = 1.0;
+  bool by_fraction = false;  // gnuplot is given places from 0 to 1 instead of values
   AxisScale scale = AxisScale::linear;
   std::string label;
   std::vector<Tick> ticks;

@@ -90,10 +90,6 @@ std::string grouped(std::size_t value) {
   return digits;
 }
 
-bool drawable(double value, AxisScale scale) {
-  return std::isfinite(value) && (scale == AxisScale::linear || value > 0.0);
-}
-
 /// A well-mixed value of an index (splitmix64; Steele, Lea & Flood 2014).
 std::uint64_t mixed(std::uint64_t z) {
   z += 0x9e3779b97f4a7c15u;
@@ -121,7 +117,12 @@ struct Block {
   std::size_t left_out = 0, drawn = 0, thinned_from = 0;
 };
 
-Block block_of(const Series& series, const Axes& axes) {
+/// A value as gnuplot gets it: itself, or its place on the axis.
+double handed(double value, const AxisView& axis) {
+  return axis.by_fraction ? axis.fraction(value) : value;
+}
+
+Block block_of(const Series& series, const Axes& axes, const PanelView& panel) {
   const bool cloud = series.kind == SeriesKind::points || series.kind == SeriesKind::scatter;
   const std::size_t n = series.x.size();
   const std::vector<std::size_t> kept = kept_points(n, cloud ? Figure::point_limit : n);
@@ -140,9 +141,11 @@ Block block_of(const Series& series, const Axes& axes) {
     }
     broken = false;
     ++block.drawn;
-    fmt::format_to(out, "{:.9g} {:.9g}", series.x[i], series.y[i]);
-    if (!series.upper.empty()) fmt::format_to(out, " {:.9g}", series.upper[i]);
-    if (!series.value.empty()) fmt::format_to(out, " {:.9g}", series.value[i]);
+    fmt::format_to(out, "{:.9g} {:.9g}", handed(series.x[i], panel.x),
+                   handed(series.y[i], panel.y));
+    if (!series.upper.empty()) fmt::format_to(out, " {:.9g}", handed(series.upper[i], panel.y));
+    if (!series.value.empty())
+      fmt::format_to(out, " {:.9g}", handed(series.value[i], *panel.colours));
     block.text += '\n';
   }
   return block;
@@ -168,23 +171,26 @@ std::string tick_list(const AxisView& axis) {
   std::string list;
   for (const Tick& tick : axis.ticks) {
     if (!list.empty()) list += ", ";
-    list += gnuplot_text(tick.label) + " " + number(tick.value) + (tick.minor ? " 1" : " 0");
+    list += gnuplot_text(tick.label) + " " + number(handed(tick.value, axis)) +
+            (tick.minor ? " 1" : " 0");
   }
   return "(" + list + ")";
 }
 
 void write_axis(std::string& out, std::string_view name, const AxisView& axis) {
-  if (axis.scale == AxisScale::logarithmic) out += fmt::format("set logscale {}\n", name);
-  out +=
-      fmt::format("set {}range [{}:{}] noextend\n", name, number(axis.lower), number(axis.upper));
+  if (axis.scale == AxisScale::logarithmic && !axis.by_fraction)
+    out += fmt::format("set logscale {}\n", name);
+  out += fmt::format("set {}range [{}:{}] noextend\n", name, number(handed(axis.lower, axis)),
+                     number(handed(axis.upper, axis)));
   out += fmt::format("set {}tics out nomirror scale 0.5,0.3 offset 0,{} textcolor rgb '{}' {}\n",
                      name, name == "x" ? tick_lift : 0.0, ink, tick_list(axis));
 }
 
 void write_colour_bar(std::string& out, const PanelView& panel, const Screen& screen) {
   const AxisView& colours = *panel.colours;
-  if (colours.scale == AxisScale::logarithmic) out += "set logscale cb\n";
-  out += fmt::format("set cbrange [{}:{}]\n", number(colours.lower), number(colours.upper));
+  if (colours.scale == AxisScale::logarithmic && !colours.by_fraction) out += "set logscale cb\n";
+  out += fmt::format("set cbrange [{}:{}]\n", number(handed(colours.lower, colours)),
+                     number(handed(colours.upper, colours)));
   out += fmt::format("set cbtics out nomirror scale 0.4,0.2 offset 0,{} textcolor rgb '{}' {}\n",
                      panel.bar_below ? tick_lift : 0.0, ink, tick_list(colours));
   out += fmt::format(
@@ -216,7 +222,9 @@ void write_label(std::string& out, const std::string& text, Spot middle, bool up
                      screen.at(middle.x, middle.y), upright ? "rotate by 90" : "norotate", ink);
 }
 
-std::string drawn_as(const Series& series, const PanelView& panel, std::string_view colour) {
+/// A line of one point is drawn as that point.
+std::string drawn_as(const Series& series, const PanelView& panel, std::string_view colour,
+                     bool one_point) {
   const Style& style = series.style;
   const auto markers = [&](Marker otherwise) {
     return fmt::format("pt {} ps {:.3f}", point_type(style.marker.value_or(otherwise)),
@@ -234,6 +242,8 @@ std::string drawn_as(const Series& series, const PanelView& panel, std::string_v
     case SeriesKind::dashed: {
       const std::string line = fmt::format("lw {:.2f} lc rgb '{}'{}", style.width_px, colour,
                                            series.kind == SeriesKind::dashed ? " dt (7,4)" : "");
+      if (one_point)
+        return fmt::format("using 1:2 with points {} lc rgb '{}'", markers(Marker::circle), colour);
       return style.marker
                  ? fmt::format("using 1:2 with linespoints {} {}", line, markers(Marker::circle))
                  : "using 1:2 with lines " + line;
@@ -249,15 +259,19 @@ std::string drawn_as(const Series& series, const PanelView& panel, std::string_v
   return fmt::format("using 1:2:3 with points pt 7 ps {:.3f} lc palette", point_size(diameter));
 }
 
-void write_arrows(std::string& out, const Axes& axes) {
+void write_arrows(std::string& out, const Axes& axes, const PanelView& panel) {
   for (const Arrow& arrow : axes.arrows()) {
+    const std::string from_x = number(handed(arrow.from_x, panel.x)),
+                      from_y = number(handed(arrow.from_y, panel.y)),
+                      to_x = number(handed(arrow.to_x, panel.x)),
+                      to_y = number(handed(arrow.to_y, panel.y));
     out += fmt::format(
         "set arrow from {}, {} to {}, {} head filled size screen 0.012,18 front lw 1.6 lc rgb "
         "'{}'\n",
-        number(arrow.from_x), number(arrow.from_y), number(arrow.to_x), number(arrow.to_y), ink);
+        from_x, from_y, to_x, to_y, ink);
     out += fmt::format(
         "set label {} at {}, {} right offset character -0.8,-0.3 front textcolor rgb '{}'\n",
-        gnuplot_text(arrow.label), number(arrow.from_x), number(arrow.from_y), ink);
+        gnuplot_text(arrow.label), from_x, from_y, ink);
   }
 }
 
@@ -273,7 +287,7 @@ void write_panel(std::string& out, const Axes& axes, const PanelView& panel,
   write_axis(out, "y", panel.y);
   if (panel.colours) write_colour_bar(out, panel, screen);
   write_legend(out, panel, screen);
-  write_arrows(out, axes);
+  write_arrows(out, axes, panel);
   write_label(out, panel.x.label, panel.x_label, false, screen);
   write_label(out, panel.y.label, panel.y_label, true, screen);
   if (panel.colours)
@@ -293,8 +307,9 @@ void write_panel(std::string& out, const Axes& axes, const PanelView& panel,
     if (blocks[i].drawn == 0) continue;
     out += fmt::format("$d{} << END_OF_DATA\n{}END_OF_DATA\n", i, blocks[i].text);
     std::string& layer = layers[series.kind == SeriesKind::band ? 0 : 1];
-    layer += fmt::format("$d{} {} {}, ", i, drawn_as(series, panel, hex(colour)),
-                         series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name));
+    layer +=
+        fmt::format("$d{} {} {}, ", i, drawn_as(series, panel, hex(colour), blocks[i].drawn == 1),
+                    series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name));
   }
   const std::string plots = layers[0] + layers[1];
   // A panel without any data still shows its axes.
@@ -351,12 +366,15 @@ std::vector<std::string> notes_on(const std::vector<std::vector<Block>>& blocks)
 }  // namespace
 
 std::string figure_script(const Figure& figure) {
+  FigureView view = lay_out(figure, {});
   std::vector<std::vector<Block>> blocks;
-  for (const auto& axes : figure.panels()) {
+  for (std::size_t i = 0; i < view.panels.size(); ++i) {
+    const Axes& axes = *figure.panels()[i];
     std::vector<Block>& panel = blocks.emplace_back();
-    for (const Series& series : axes->series()) panel.push_back(block_of(series, *axes));
+    for (const Series& series : axes.series())
+      panel.push_back(block_of(series, axes, view.panels[i]));
   }
-  const FigureView view = lay_out(figure, notes_on(blocks));
+  if (const auto notes = notes_on(blocks); !notes.empty()) view = lay_out(figure, notes);
   const Screen screen(view.width, view.height);
 
   std::string out;

@@ -1,10 +1,13 @@
 #include "report/plot/gnuplot.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <system_error>
+#include <thread>
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -52,8 +55,33 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_;
 };
 
+/// What waitpid says about a child's end. One that is not done within the limit is killed: a
+/// picture is never worth a wait without end.
+int status_of(pid_t child, std::chrono::milliseconds limit) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  auto pause = std::chrono::microseconds(200);
+  int status = 0;
+  for (;;) {
+    const pid_t ended = ::waitpid(child, &status, WNOHANG);
+    if (ended == child) return status;
+    if (ended < 0 && errno != EINTR) throw PlotError("gnuplot is lost: " + system_message(errno));
+    if (Clock::now() - begin > limit) {
+      ::kill(child, SIGKILL);
+      while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+      }
+      throw PlotError(
+          "gnuplot was not done after " +
+          std::to_string(std::chrono::duration_cast<std::chrono::seconds>(limit).count()) +
+          " s and has been stopped");
+    }
+    std::this_thread::sleep_for(pause);
+    pause = std::min(2 * pause, std::chrono::microseconds(10000));
+  }
+}
+
 /// Starts gnuplot and returns what waitpid says about its end.
-int run_to_end(const SpawnActions& actions) {
+int run_to_end(const SpawnActions& actions, std::chrono::milliseconds limit) {
   std::string name = "gnuplot", no_startup_files = "-d", from_stdin = "-";
   const std::array<char*, 4> arguments{name.data(), no_startup_files.data(), from_stdin.data(),
                                        nullptr};
@@ -63,10 +91,7 @@ int run_to_end(const SpawnActions& actions) {
   if (error == ENOENT)
     throw PlotError("gnuplot is not installed (Debian: apt-get install gnuplot-nox)");
   if (error != 0) throw PlotError("gnuplot does not start: " + system_message(error));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) throw PlotError("gnuplot is lost: " + system_message(errno));
-  return status;
+  return status_of(child, limit);
 }
 
 /// The length of the UTF-8 character at the start of text; 0 if there is none.
@@ -123,7 +148,7 @@ std::size_t find_script(std::string_view text) {
 
 }  // namespace
 
-std::string run_gnuplot(std::string_view script) {
+std::string run_gnuplot(std::string_view script, std::chrono::milliseconds limit) {
   const File input = scratch_file(), output = scratch_file(), messages = scratch_file();
   const bool written = std::fwrite(script.data(), 1, script.size(), input.get()) == script.size() &&
                        std::fflush(input.get()) == 0;
@@ -134,7 +159,7 @@ std::string run_gnuplot(std::string_view script) {
   actions.connect(input, STDIN_FILENO);
   actions.connect(output, STDOUT_FILENO);
   actions.connect(messages, STDERR_FILENO);
-  const int status = run_to_end(actions);
+  const int status = run_to_end(actions, limit);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     const std::string said = read_back(messages);
     throw PlotError("gnuplot failed: " + (said.empty() ? "without a message" : said), said);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -22,8 +23,10 @@ class PlotError : public std::runtime_error {
 };
 
 /// Runs the `gnuplot` of the search path on a script, without a shell and without the user's or the
-/// system's start-up files, and returns what it wrote to its standard output. Errors: PlotError.
-std::string run_gnuplot(std::string_view script);
+/// system's start-up files, and returns what it wrote to its standard output. Errors: PlotError,
+/// also if it is not done within the limit; it is stopped then.
+std::string run_gnuplot(std::string_view script,
+                        std::chrono::milliseconds limit = std::chrono::seconds(30));
 
 /// A text as a gnuplot string literal for its "enhanced" mode: nothing in it is a command, a
 /// variable or markup, except that _{...} is a subscript and ^{...} a superscript. Line breaks and

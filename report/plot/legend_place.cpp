@@ -68,7 +68,7 @@ class FreePlace {
       const bool drawn = std::isfinite(next.x) && std::isfinite(next.y);
       if (drawn && connected && std::isfinite(last.x)) {
         const double length = std::max(std::abs(next.x - last.x), std::abs(next.y - last.y));
-        const int steps = std::clamp(static_cast<int>(length / 0.02), 1, 200);
+        const int steps = static_cast<int>(std::clamp(length / 0.02, 1.0, 200.0));
         for (int k = 1; k < steps; ++k) {
           const double t = static_cast<double>(k) / steps;
           mark({last.x + t * (next.x - last.x), last.y + t * (next.y - last.y)});

@@ -16,6 +16,7 @@ void PartOutput::table(const std::string& name, const std::string& csv) {
 }
 
 void PartOutput::picture(const std::string& name, const Figure& figure) {
+  if (!plot_) return;
   try {
     figure.render_svg(folder_->file(name));
     files_.push_back(name);

@@ -15,7 +15,10 @@ namespace repose::report {
 /// Where a part writes to, and what it has written.
 class PartOutput {
  public:
-  PartOutput(const io::ResultFolder& folder, bool quiet) : folder_(&folder), quiet_(quiet) {}
+  PartOutput(const io::ResultFolder& folder, bool quiet, bool plot = true)
+      : folder_(&folder),
+        quiet_(quiet),
+        plot_(plot) {}
   void table(const std::string& name, const std::string& csv);
   /// A picture that cannot be drawn is a warning.
   void picture(const std::string& name, const Figure& figure);
@@ -25,7 +28,7 @@ class PartOutput {
 
  private:
   const io::ResultFolder* folder_;
-  bool quiet_;
+  bool quiet_, plot_;
   std::vector<std::string> files_;
 };
 

@@ -156,6 +156,7 @@ Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
     Json t;
     t["data"] = file.about[k].data;
     t["held_out"] = file.targets[k].held_out;
+    if (!file.about[k].strain.empty()) t["strain"] = file.about[k].strain;
     double objective = 0.0;
     for (const auto& s : u.channels) {
       if (s.target != k) continue;

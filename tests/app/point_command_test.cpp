@@ -1,5 +1,6 @@
 // `repose point` from input file to result folder: messages, exit codes, files; and every ready
 // test.
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -80,6 +81,119 @@ TEST(ReadPointTest, says_what_is_wrong_and_where) {
   EXPECT_EQ(open_end, "");
 }
 
+// Strains are fractions: whatever lies beyond max_strain was meant in per cent.
+TEST(ReadPointTest, per_cent_are_told_from_fractions) {
+  const auto message = problems(good, {"test.axial_strain=15"});
+  EXPECT_TRUE(contains(message, "test.axial_strain = 15 is 1500 %; did you mean 0.15?")) << message;
+  const std::string start = good.substr(0, good.find("axial_strain"));
+  const auto refuses = [&](const std::string& line, const std::string& key,
+                           std::vector<std::string> sets = {}) {
+    const std::string text = problems(start + line, sets);
+    EXPECT_TRUE(contains(text, key + " = ")) << line << ": " << text;
+    EXPECT_TRUE(contains(text, "did you mean")) << line << ": " << text;
+  };
+  refuses("axial_strain_total = 15.0\n", "test.axial_strain_total");
+  refuses("axial_strain = -15.0\n", "test.axial_strain");
+  refuses("volumetric_strain = 12.0\n", "test.volumetric_strain");
+  refuses("volumetric_strain_total = 12.0\n", "test.volumetric_strain_total");
+  refuses("stages = [{ axial_strain = 0.1 }, { axial_strain = 15.0 }]\n",
+          "test.stages[1].axial_strain");
+  refuses("axial_strain = 0.1\nstop = { eps_q = 11.0 }\n", "test.stop.eps_q");
+  refuses("axial_strain = 0.1\nstop = { eps_v_total = -11.0 }\n", "test.stop.eps_v_total");
+  refuses("cycles = 2\naxial_strain_min = -0.1\naxial_strain_max = 15.0\n",
+          "test.axial_strain_max");
+  refuses("axial_strain = 0.1\nstrain_limit = 20.0\n", "test.strain_limit");
+  refuses("axial_strain = 0.6\n[integration]\nmax_strain = 0.5\n", "test.axial_strain");
+  const std::string shear = "[test]\nkind = \"simple_shear\"\n";
+  const std::string head = good.substr(0, good.find("[test]"));
+  EXPECT_TRUE(contains(problems(head + shear + "shear_strain = 20.0\n"), "did you mean 0.2?"));
+  EXPECT_TRUE(
+      contains(problems(head + shear + "shear_strain_total = 20.0\n"), "did you mean 0.2?"));
+}
+
+TEST(ReadPointTest, stages_count_from_their_start_and_totals_from_that_of_the_test) {
+  const std::string start = good.substr(0, good.find("axial_strain"));
+  const auto goal = [&](const std::string& line) {
+    input::InputFile file = input::InputFile::parse(start + line, "t.toml");
+    return *input::read_point_test(file).test.path.legs.back().spec().goal;
+  };
+  EXPECT_TRUE(goal("axial_strain = 0.1\n").of_stage);
+  EXPECT_FALSE(goal("axial_strain_total = 0.1\n").of_stage);
+  EXPECT_FALSE(goal("q_end = 1e4\n").of_stage);
+  // −ln(1 − 0.1) in logarithmic strain
+  EXPECT_NEAR(goal("strain = \"engineering\"\naxial_strain = 0.1\n").value, 0.105360516, 1e-9);
+  EXPECT_TRUE(contains(problems(start + "strain = \"engineering\"\naxial_strain = 1.5\n"),
+                       "an engineering strain is below 1"));
+  EXPECT_TRUE(
+      contains(problems(start + "strain = \"nominal\"\naxial_strain = 0.1\n"), "engineering"));
+}
+
+TEST(ReadPointTest, other_ways_to_give_the_start) {
+  const auto start = [&](std::vector<std::string> lines) {
+    std::string text = good;
+    std::string initial;
+    for (const std::string& line : lines) initial += line + "\n";
+    const auto at = text.find("p = 100e3\nocr = 1.0\n");
+    text.replace(at, std::string("p = 100e3\nocr = 1.0\n").size(), initial);
+    return text;
+  };
+  const auto initial = [&](std::vector<std::string> lines) {
+    const std::string text = start(std::move(lines));
+    input::InputFile file = input::InputFile::parse(text, "t.toml");
+    return input::read_point_test(file).test.initial;
+  };
+  EXPECT_EQ(initial({"sigma_v = 100e3", "K0 = 0.7"}).sigma_v, 100e3);
+  EXPECT_EQ(initial({"p = 100e3", "ocr_v = 2.0", "K0 = 0.7"}).ocr_v, 2.0);
+  EXPECT_EQ(initial({"p = 100e3", "e = 1.08"}).v, 2.08);
+  EXPECT_TRUE(contains(problems(start({"p = 100e3", "e = 1.0", "v = 2.0"})), "either e or v"));
+  EXPECT_TRUE(contains(problems(start({"sigma_v = 100e3"})), "sigma_v needs K0"));
+  EXPECT_TRUE(
+      contains(problems(start({"sigma_v = 100e3", "p = 1e5", "K0 = 0.7"})), "either p or sigma_v"));
+  EXPECT_TRUE(contains(problems(start({"p = 100e3", "ocr = 2.0", "ocr_v = 2.0"})),
+                       "either ocr = p_c/p or ocr_v"));
+  // Γ = 2.759 at 1 kPa, λ = 0.161: v on the line at p = p_c = 100 kPa is 2.0862
+  EXPECT_TRUE(contains(problems(start({"p = 100e3", "ocr = 1.0", "v = 1.8"})),
+                       "the initial state contradicts itself: v is 1.8, and at p = 1e+05 Pa with "
+                       "p_c = 1e+05 Pa the compression line (Gamma or N) says 2.0862"))
+      << problems(start({"p = 100e3", "ocr = 1.0", "v = 1.8"}));
+}
+
+TEST(ReadPointTest, doubts_are_told_with_their_reason) {
+  const auto notes = [](const std::string& text, std::vector<std::string> sets = {}) {
+    input::InputFile file = input::InputFile::parse(text, "t.toml", sets);
+    return input::read_point_test(file).notes;
+  };
+  EXPECT_TRUE(notes(good).empty());
+  const auto low = notes(good, {"initial.p=200"});
+  ASSERT_EQ(low.size(), 1u);
+  EXPECT_EQ(
+      low[0],
+      "initial.p = 200 Pa is 0.2 kPa, and published tests start at 1 kPa and more; if 200 kPa "
+      "is meant, write 200e3");
+  const std::string grains = R"([law]
+name = "mu_i"
+mu_0 = 0.38
+mu_d = 0.57
+I_0 = 0.279
+d = 5.3
+rho_p = 1200.0
+rho_0 = 1300.0
+K = 254800.0
+[initial]
+p = 1000.0
+[test]
+kind = "simple_shear"
+drainage = "constant_p"
+shear_strain = 0.1
+)";
+  const auto odd = notes(grains);
+  ASSERT_EQ(odd.size(), 2u);
+  EXPECT_TRUE(contains(odd[0],
+                       "law.d = 5.3 m: grains larger than 0.1 m are rare; if 5.3 mm is "
+                       "meant, write 0.0053"));
+  EXPECT_TRUE(contains(odd[1], "law.rho_p = 1200 kg/m³ is less than rho_0 = 1300 kg/m³"));
+}
+
 class PointCommand : public testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& text) const {
@@ -137,6 +251,31 @@ TEST_F(PointCommand, a_path_that_cannot_be_finished_leaves_the_part_done) {
   EXPECT_FALSE(contains(read("c/curve.csv"), "nan"));
 }
 
+TEST_F(PointCommand, draws_no_picture_if_told_so) {
+  const std::string file = write("t.toml", good), out = (folder_ / "a").string();
+  const char* const words[] = {"repose",    "point",   file.c_str(), "-o",
+                               out.c_str(), "--quiet", "--no-plot"};
+  ASSERT_EQ(run_command_line(7, words), 0);
+  EXPECT_TRUE(fs::exists(folder_ / "a/curve.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "a/curve.svg"));
+}
+
+// p is constant but for round-off here, whatever the pressure and the overconsolidation.
+TEST_F(PointCommand, a_quantity_that_does_not_change_is_drawn) {
+  std::string text = good.substr(0, good.find("[test]"));
+  text +=
+      "[test]\nkind = \"simple_shear\"\ndrainage = \"constant_p\"\nshear_strain = 0.2\n"
+      "points = 40\n";
+  const std::string file = write("t.toml", text);
+  for (const char* p : {"50e3", "100e3", "123456.7", "400e3"})
+    for (const char* ocr : {"1.0", "2.0", "8.0"}) {
+      ASSERT_EQ(run(file, "a", {std::string("initial.p=") + p, std::string("initial.ocr=") + ocr}),
+                0);
+      EXPECT_TRUE(fs::exists(folder_ / "a/curve.svg") || std::system("gnuplot --version") != 0)
+          << p << " " << ocr;
+    }
+}
+
 TEST_F(PointCommand, a_history_and_its_mistakes) {
   std::string text = good.substr(0, good.find("[test]"));
   text += "[test]\nkind = \"custom\"\nhistory = \"h.csv\"\n";
@@ -148,6 +287,9 @@ TEST_F(PointCommand, a_history_and_its_mistakes) {
   EXPECT_EQ(run(file, "a"), 2);
   write("h.csv", "time_s,eps_a,sigma_r\n0,0,1e5\n10,0.1,1e5\n");
   EXPECT_EQ(run(file, "a"), 2);
+  write("h.csv", "time_s,eps_a,sigma_r_Pa\n0,0,2e5\n10,0.1,2e5\n");
+  EXPECT_EQ(run(file, "a"), 2) << "the test starts at 100 kPa";
+  EXPECT_EQ(run(file, "a", {"test.history_is=change"}), 0);
   write("h.csv", "time_s,eps_a,sigma_r_Pa\n0,0,1e5\n10,0.1,1e5\n");
   EXPECT_EQ(run(file, "a"), 0);
   ASSERT_EQ(run((folder_ / "a/input.toml").string(), "b"), 0);

@@ -189,5 +189,106 @@ TEST_F(FitCommand, KappaStaysBelowLambdaWhereBoundsOverlap) {
   EXPECT_EQ(file.free[2].of, 1);
 }
 
+/// Drained compression of a clay, over ε_q: rows far beyond 10 % of axial strain.
+std::string drained_text(const std::string& end) {
+  return R"([law]
+name = "modified_cam_clay"
+compression = "v-ln_p"
+nu = 0.3
+Gamma = 2.759
+kappa = 0.062
+[fit]
+M = { lower = 0.5, upper = 1.5 }
+lambda = { lower = 0.08, upper = 0.4 }
+[[target]]
+data = "cd.csv"
+x = "eps_q"
+y = "q_Pa"
+test = { kind = "triaxial", drainage = "drained")" +
+         end + R"( }
+initial = { p = 200e3, ocr = 1.0 }
+[solver]
+starts = 3
+)";
+}
+
+/// The same, measured by another path: driven by stress.
+std::string drained_table() {
+  const LawSpec spec{
+      "modified_cam_clay",
+      {{"compression", "v-ln_p"}},
+      {{"M", 0.888}, {"lambda", 0.161}, {"kappa", 0.062}, {"nu", 0.3}, {"Gamma", 2.759}}};
+  const LawInfo& law = find_law(spec);
+  const auto theta = checked_parameters(spec);
+  point::Stage stage;
+  stage.drive = point::Drive::stress;
+  stage.goal = point::Goal{point::Quantity::q, 200e3};
+  stage.points = 10;
+  point::PointTest test;
+  test.path = point::path_of({stage});
+  test.initial.p = 200e3;
+  test.initial.ocr = 1.0;
+  test.settings.tolerance = 1e-10;
+  point::Curve curve;
+  point::simulate(law, theta, test, curve);
+  std::vector<double> eps_q, q;
+  point::read_column(law, theta, test, curve, point::Quantity::eps_q, eps_q);
+  point::read_column(law, theta, test, curve, point::Quantity::q, q);
+  std::string text = "eps_q,q_Pa\n";
+  for (std::size_t i = 1; i < q.size(); ++i) text += fmt::format("{},{}\n", eps_q[i], q[i]);
+  return text;
+}
+
+TEST_F(FitCommand, ATestEndsWithItsDataUnlessItSaysWhere) {
+  write("cd.csv", drained_table());
+  write("free.toml", drained_text(""));
+  ASSERT_EQ(command({"fit", path("free.toml"), "-o", path("free"), "--no-plot"}), 0);
+  const auto report = nlohmann::json::parse(content_of(folder_ / "free/fit.json"));
+  // chords between 200 rows: (Δ ln q)²/8 of q, 1e-5
+  EXPECT_NEAR(report["parameters"]["M"]["value"].get<double>(), 0.888, 1e-4);
+  EXPECT_NEAR(report["parameters"]["lambda"]["value"].get<double>(), 0.161, 1e-4);
+  EXPECT_EQ(report["targets"][0]["strain"], "logarithmic");
+  EXPECT_FALSE(fs::exists(folder_ / "free/fit.svg"));
+  const std::string short_end = complaint(drained_text(", axial_strain = 0.02"));
+  EXPECT_NE(short_end.find("lies beyond the test, which goes from 0 to 0.0"), std::string::npos)
+      << short_end;
+  EXPECT_NE(short_end.find("leave the test's end out to drive it to the last row"),
+            std::string::npos)
+      << short_end;
+}
+
+TEST_F(FitCommand, EngineeringStrainsAreSaidToBe) {
+  // ε = 1 − exp(−ε_log) of the same rows
+  std::istringstream table(undrained_table());
+  std::string line, text;
+  std::getline(table, line);
+  std::getline(table, line);
+  text = line + "\n";
+  while (std::getline(table, line)) {
+    const auto comma = line.find(',');
+    const double logarithmic = 0.01 * std::stod(line.substr(0, comma));
+    text += fmt::format("{}{}\n", 100.0 * (1.0 - std::exp(-logarithmic)), line.substr(comma));
+  }
+  write("cu.csv", text);
+  // the table ends at 1 − exp(−0.1)
+  const std::string file = replaced(replaced(fit_text(), ", axial_strain = 0.1", ""), "[solver]",
+                                    "strain = \"engineering\"\n[solver]");
+  write("eng.toml", file);
+  ASSERT_EQ(command({"fit", path("eng.toml"), "-o", path("eng"), "--no-plot"}), 0);
+  const auto report = nlohmann::json::parse(content_of(folder_ / "eng/fit.json"));
+  EXPECT_NEAR(report["parameters"]["M"]["value"].get<double>(), 0.888, 1e-6);
+  EXPECT_NEAR(report["parameters"]["kappa"]["value"].get<double>(), 0.062, 1e-6);
+  EXPECT_EQ(report["targets"][0]["strain"], "engineering");
+}
+
+TEST_F(FitCommand, AnExcessPorePressureOfADrainedTestIsDoubted) {
+  write("fit.toml", replaced(fit_text(), "\"undrained\"", "\"drained\""));
+  const input::FitFile file = input::read_fit(path("fit.toml"), {}, 1);
+  ASSERT_FALSE(file.notes.empty());
+  EXPECT_NE(file.notes[0].find("u_Pa is fitted to a test without an undrained stage"),
+            std::string::npos)
+      << file.notes[0];
+}
+
 }  // namespace
 }  // namespace repose::app

@@ -251,7 +251,8 @@ TEST(PointSimulator, RefusesRowsThatTheTestDoesNotPass) {
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()),
               "the row at p_Pa = 900000 is not on the way of the test, which leads from 50000 to "
-              "800000, 100000: rows must stand in the order of the test");
+              "800000, 100000: rows must stand in the order of the test; leave the test's end out "
+              "to drive it to the last row");
   }
 }
 

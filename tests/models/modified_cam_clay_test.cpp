@@ -362,6 +362,51 @@ TEST(CamClayInitial, ShearedStatesLieOnOrInTheYieldSurface) {
   EXPECT_NEAR(start.state[0], 1e5 + q * q / (0.888 * 0.888 * 1e5), 1e-9);
 }
 
+// ocr_v = σ_v,max/σ_v: p_c is that of the yield surface through the stress under σ_v,max.
+TEST(CamClayInitial, VerticalOverconsolidation) {
+  const auto P = parameters_of<Classical>(examples_of<Classical>()[0]);
+  InitialConditions given;
+  given.sigma_v = 1e5;
+  given.K0 = 0.8;
+  given.ocr_v = 3.0;
+  const InitialPoint same = Classical::initial(P, given);
+  EXPECT_NEAR(same.stress[1], -1e5, 1e-9);
+  EXPECT_NEAR(pressure(same.stress), 1e5 * 2.6 / 3.0, 1e-9);
+  const auto p_c = [](double vertical, double K0) {
+    const double p = vertical * (1.0 + 2.0 * K0) / 3.0, q = vertical * (1.0 - K0);
+    return p + q * q / (0.888 * 0.888 * p);
+  };
+  EXPECT_NEAR(same.state[0], p_c(3e5, 0.8), 1e-9 * same.state[0]);
+  given.K0_nc = 0.6;
+  EXPECT_NEAR(Classical::initial(P, given).state[0], p_c(3e5, 0.6), 1e-9 * same.state[0]);
+  // from v alone: the pressure at which the line says this v
+  InitialConditions by_volume = given;
+  by_volume.sigma_v.reset();
+  by_volume.v = 2650.0 / Classical::initial(P, given).density;
+  EXPECT_NEAR(Classical::initial(P, by_volume).stress[1], -1e5, 1e-7);
+}
+
+TEST(CamClayInitial, AVolumeThatTheLineContradictsIsRefused) {
+  const auto P = parameters_of<Classical>(examples_of<Classical>()[0]);
+  InitialConditions given;
+  given.p = 1e5;
+  given.ocr = 2.0;  // v = 2.0175676 on the line
+  given.v = 2.02;   // 0.1 %: as measured
+  EXPECT_NEAR(2650.0 / Classical::initial(P, given).density, 2.02, 1e-12);
+  given.v = 2.2;
+  try {
+    Classical::initial(P, given);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.key(), "v");
+    EXPECT_STREQ(
+        error.what(),
+        "the initial state contradicts itself: v is 2.2, and at p = 1e+05 Pa with p_c = "
+        "2e+05 Pa the compression line (Gamma or N) says 2.0176; leave out v, ocr or p, or "
+        "Gamma and N");
+  }
+}
+
 TEST(CamClayInitial, Refusals) {
   const auto P = parameters_of<Classical>(examples_of<Classical>()[0]);
   const auto refused = [&](const InitialConditions& given) {
@@ -379,9 +424,11 @@ TEST(CamClayInitial, Refusals) {
   EXPECT_EQ(refused(given), "ocr: ocr = p_c/p must be >= 1");
   given.ocr = 1.0;
   given.K0 = 0.5;  // σ_v = 150 kPa, q = 75 kPa, p_c >= p + q²/(M²p)
-  EXPECT_EQ(refused(given),
-            "ocr: the initial stress lies outside the yield surface: p_c = 100000.000000 Pa, and "
-            "this stress needs p_c >= 171334.002922 Pa");
+  EXPECT_EQ(
+      refused(given),
+      "ocr: the initial stress lies outside the yield surface: p_c = 100000.000000 Pa, and "
+      "this stress needs p_c >= 171334.002922 Pa; ocr is p_c/p, of mean stresses: the ratio of "
+      "vertical stresses sigma_v,max/sigma_v is ocr_v");
   given = {};
   given.p = 1e-3;
   EXPECT_EQ(refused(given),

@@ -131,6 +131,84 @@ TEST_P(InitialStressTest, ALithostaticColumnStartsInEquilibrium) {
   EXPECT_GT(peak[0], 0.1) << "J/m: a fall of a few millimetres, 0.5 p²/K over the column";
 }
 
+/// Vertical stress (compression positive) of the lowest row of points.
+double at_the_bottom(const Simulation& simulation) {
+  double lowest = HUGE_VAL, stress = 0.0;
+  for (const PointState& p : points_of(simulation))
+    if (p[Y] < lowest - 1e-9) {
+      lowest = p[Y];
+      stress = -p[SYY];
+    }
+  return stress;
+}
+
+/// Layers from wall to wall, from below: heights and laws.
+Scene layers(const std::vector<std::pair<double, LawSpec>>& list, double K0) {
+  Scene scene = empty_box(0.4, 0.8, 0.05);
+  scene.gravity = 9.81;
+  scene.floor = {Wall::Kind::no_slip};
+  double y = 0.0;
+  for (const auto& [height, law] : list) {
+    Body body = block(0.0, y, 0.4, height, law);
+    body.initial = {};
+    body.initial.K0 = K0;
+    body.lithostatic = true;
+    scene.bodies.push_back(body);
+    y += height;
+  }
+  return scene;
+}
+
+// Two layers weigh what one body of both does, to the round-off of the sum.
+TEST(Lithostatic, ALayerCarriesTheOnesAbove) {
+  const Simulation one(layers({{0.5, mu_i(1e6)}}, 0.7), 1);
+  const Simulation two(layers({{0.25, mu_i(1e6)}, {0.25, mu_i(1e6)}}, 0.7), 1);
+  const Simulation four(
+      layers({{0.1, mu_i(1e6)}, {0.15, mu_i(1e6)}, {0.05, mu_i(1e6)}, {0.2, mu_i(1e6)}}, 0.7), 1);
+  const double whole = at_the_bottom(one);
+  EXPECT_NEAR(whole, 1300.0 * 9.81 * 0.4875, 0.02 * whole);  // compressible by 6 kPa/1 MPa
+  EXPECT_NEAR(at_the_bottom(two), whole, 1e-9 * whole);
+  EXPECT_NEAR(at_the_bottom(four), whole, 1e-9 * whole);
+}
+
+// From the first step the kinetic energy stays below 1e-8 of the potential energy of the heap, with
+// laws and densities of each layer's own. What is left is the stress of a point, which is that of
+// its middle: (h/2H)² of the acceleration g in the topmost row.
+TEST(Lithostatic, LayersAreAtRestFromTheFirstStep) {
+  LawSpec heavy = mu_i(2e6);
+  heavy.values["rho_0"] = 1800.0;
+  heavy.values["rho_p"] = 2650.0;
+  for (const Scene& scene : {layers({{0.25, heavy}, {0.25, mu_i(2e6)}}, 0.7),
+                             layers({{0.2, mu_i(2e6)}, {0.1, heavy}, {0.2, mu_i(2e6)}}, 0.9)}) {
+    Simulation simulation(scene, 1);
+    const double potential = simulation.diagnostics().potential_J_per_m;
+    double peak = 0.0;
+    while (simulation.time() < 0.2) {
+      simulation.step(0.2);
+      peak = std::max(peak, simulation.diagnostics().kinetic_J_per_m);
+    }
+    EXPECT_LT(peak, 1e-8 * potential) << peak << " " << potential;
+  }
+}
+
+// Beside each other: each column carries what stands on it, the free one nothing.
+TEST(Lithostatic, ColumnsCarryWhatStandsOnThem) {
+  Scene scene = layers({{0.25, mu_i(1e6)}}, 0.7);
+  Body upper = block(0.0, 0.25, 0.2, 0.25, mu_i(1e6));
+  upper.initial = {};
+  upper.initial.p = 100.0;  // not lithostatic itself: its weight counts as it is
+  scene.bodies.push_back(upper);
+  const Simulation simulation(scene, 1);
+  double under = 0.0, beside = 0.0;
+  for (const PointState& p : points_of(simulation)) {
+    if (p[Y] > 0.02) continue;
+    (p[X] < 0.2 ? under : beside) = -p[SYY];
+  }
+  // the load compresses what is below it by 0.8 · 3.2 kPa/K = 0.26 %, which then weighs more
+  const double density = 1300.0 * (1.0 + 100.0 / 1e6);
+  EXPECT_NEAR(under - beside, density * 9.81 * 0.25, 3e-3 * under);
+}
+
 INSTANTIATE_TEST_SUITE_P(Laws, InitialStressTest, ::testing::ValuesIn(every_law),
                          [](const auto& one) { return std::string(one.param.name); });
 

@@ -1,7 +1,9 @@
 #include "report/plot/axis_ticks.hpp"
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +47,29 @@ TEST(LinearTicks, AtLeastTwoWithinAnyRange) {
       }
     }
   }
+}
+
+// Ends that differ in the last bits, not at all, or that are no numbers: no step fits, and none is
+// counted for ever.
+TEST(LinearTicks, AnyRangeEnds) {
+  const double next = std::nextafter(100.0, 200.0);
+  for (const auto& [lower, upper] :
+       std::vector<std::pair<double, double>>{{100.0, next},
+                                              {100.0, 100.0},
+                                              {100.0, 100.0 + 64.0 * (next - 100.0)},
+                                              {0.0, 0.0},
+                                              {-next, -100.0},
+                                              {0.0, std::numeric_limits<double>::infinity()},
+                                              {std::nan(""), 1.0},
+                                              {2.0, 1.0},
+                                              {0.0, 1e-300},
+                                              {-1e300, 1e300},
+                                              {0.0, std::numeric_limits<double>::denorm_min()}})
+    for (const int target : {1, 2, 5, 9}) {
+      const auto ticks = linear_ticks(lower, upper, target);
+      EXPECT_LE(ticks.size(), 20u) << lower << " " << upper;
+      for (const Tick& tick : ticks) EXPECT_TRUE(std::isfinite(tick.value));
+    }
 }
 
 TEST(LogarithmicTicks, PowersOfTenOverManyDecades) {

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string_view>
 
@@ -228,6 +230,85 @@ TEST_F(FigureTest, WhatCannotBeDrawnIsCounted) {
   Figure without;
   without.add_axes().line("", Values{0, 1}, Values{std::nan(""), std::nan("")});
   EXPECT_TRUE(contains(without.svg(), "2 values cannot be drawn"));
+}
+
+/// Seconds that a picture of these values takes, on any scales.
+double seconds_for(const Values& x, const Values& y) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
+    Figure figure("t");
+    Axes& axes = figure.add_axes();
+    axes.x.scale = axes.y.scale = scale;
+    axes.line("a line", x, y);
+    axes.points("points", x, y);
+    EXPECT_TRUE(contains(figure.svg(), "</svg>"));
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// Constant but for round-off, empty, one row, not finite, of any size: a picture, and soon. Two
+// pictures take 0.1 s here; a loaded machine is given a hundred times that.
+TEST_F(FigureTest, EveryCurveIsDrawn) {
+  const double tiny = 1.4e-11;
+  const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  const std::vector<std::pair<Values, Values>> curves{
+      {{}, {}},
+      {{1.0}, {2.0}},
+      {{0.0, 0.1, 0.2}, {100.0, 100.0, 100.0}},
+      {{0.0, 0.1, 0.2}, {100.0, 100.0 + tiny, 100.0 - tiny}},
+      {{100.0, 100.0 + tiny, 100.0 - tiny}, {0.0, 0.1, 0.2}},
+      {{5.0, 5.0}, {0.0, 0.0}},
+      {{0.0, 1.0}, {1.0, 1.0 + 1e-8}},
+      {{nan, inf, -inf}, {1.0, 2.0, 3.0}},
+      {{0.0, 1.0, 2.0}, {nan, nan, nan}},
+      {{0.0, 1e-300}, {0.0, 1e300}},
+      {{1e-300, 1e300}, {1e300, 1e-300}},
+      {{-1e300, 1e300}, {-1e-300, 1e-300}},
+      {{0.0, 1.7e308}, {-1.7e308, 1.7e308}},
+      {{0.0, 5e-324}, {0.0, 1.0}},
+      {{1.0, 1.0 + 2e-16}, {1.0, 2.0}}};
+  for (const auto& [x, y] : curves)
+    EXPECT_LT(seconds_for(x, y), 10.0)
+        << testing::PrintToString(x) << " " << testing::PrintToString(y);
+}
+
+TEST_F(FigureTest, ALineOfOnePointIsSeen) {
+  Figure figure("t");
+  figure.add_axes().line("", Values{1.0}, Values{2.0}, unlike_the_cycle());
+  EXPECT_EQ(dots(figure.svg()).size(), 1u);
+}
+
+TEST_F(FigureTest, TinyAndHugeValuesStandAtTheirPlaces) {
+  const auto places = [](double x_unit, double y_unit) {
+    Figure figure("t");
+    figure.add_axes().points("", Values{0.0, 0.5 * x_unit, x_unit},
+                             Values{0.0, 0.25 * y_unit, y_unit});
+    return dots(figure.svg());
+  };
+  const auto usual = places(1.0, 1.0);
+  const auto odd = places(1e-280, 1e280);
+  ASSERT_EQ(usual.size(), 3u);
+  ASSERT_EQ(odd.size(), 3u);
+  // the plotting areas differ by the width of the ticks' numbers; shares of them do not
+  const auto share = [](const std::vector<Dot>& d) {
+    return std::array{(d[1].x - d[0].x) / (d[2].x - d[0].x), (d[1].y - d[0].y) / (d[2].y - d[0].y)};
+  };
+  EXPECT_NEAR(share(odd)[0], share(usual)[0], 0.01);  // gnuplot's tenth of a pixel
+  EXPECT_NEAR(share(odd)[1], share(usual)[1], 0.01);
+}
+
+TEST_F(GnuplotTest, OneThatDoesNotEndIsStopped) {
+  std::ofstream(folder_ / "gnuplot") << "#!/bin/sh\nexec sleep 100\n";
+  fs::permissions(folder_ / "gnuplot", fs::perms::owner_all);
+  const Environment path("PATH", folder_.string() + ":" + std::getenv("PATH"));
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    run_gnuplot("plot x\n", std::chrono::milliseconds(1000));
+    FAIL() << "no exception";
+  } catch (const PlotError& error) {
+    EXPECT_STREQ(error.what(), "gnuplot was not done after 1 s and has been stopped");
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
 TEST_F(FigureTest, LargeCloudsAreThinnedAndSaySo) {
