@@ -18,6 +18,9 @@ class DescribeKeys final : public Keys {
   void integer(const Key& key, Limits limits, std::int64_t& x) override {
     add(key, ValueKind::integer, std::to_string(x)).limits = limits;
   }
+  void integer(const Key& key, Limits limits, std::optional<std::int64_t>& x) override {
+    add(key, ValueKind::integer, x ? std::to_string(*x) : "").limits = limits;
+  }
   void boolean(const Key& key, bool& x) override {
     add(key, ValueKind::boolean, x ? "true" : "false");
   }
@@ -26,6 +29,11 @@ class DescribeKeys final : public Keys {
   }
   void word(const Key& key, std::span<const std::string_view> words, std::size_t& x) override {
     add(key, ValueKind::word, toml_string(words[x])).words.assign(words.begin(), words.end());
+  }
+  void word(const Key& key, std::span<const std::string_view> words,
+            std::optional<std::size_t>& x) override {
+    add(key, ValueKind::word, x ? toml_string(words[*x]) : "")
+        .words.assign(words.begin(), words.end());
   }
   void vector(const Key& key, std::size_t axes, std::array<double, 3>& x) override {
     KeyInfo& info = add(key, ValueKind::number_list, toml_vector(x, axes));
@@ -42,6 +50,9 @@ class DescribeKeys final : public Keys {
   void word_list(const Key& key, std::span<const std::string_view> words,
                  std::vector<std::size_t>&) override {
     add(key, ValueKind::word_list, "").words.assign(words.begin(), words.end());
+  }
+  void text_list(const Key& key, std::vector<std::string>&) override {
+    add(key, ValueKind::text_list, "");
   }
   void table(const Key& key, const std::function<void(Keys&)>& below) override {
     include(add(key, ValueKind::table, "").below, describe_keys(below));

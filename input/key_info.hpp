@@ -19,6 +19,7 @@ enum class ValueKind : std::uint8_t {
   word,         ///< one of KeyInfo::words
   number_list,  ///< of KeyInfo::least to KeyInfo::most numbers
   word_list,
+  text_list,  ///< or one text
   table,
   tables,
   any_of,  ///< one of the forms in KeyInfo::below

@@ -62,10 +62,13 @@ class Keys {
   virtual void number(const Key& key, double& x) = 0;
   virtual void number(const Key& key, std::optional<double>& x) = 0;
   virtual void integer(const Key& key, Limits limits, std::int64_t& x) = 0;
+  virtual void integer(const Key& key, Limits limits, std::optional<std::int64_t>& x) = 0;
   virtual void boolean(const Key& key, bool& x) = 0;
   virtual void text(const Key& key, std::string& x) = 0;
   /// One of several words, as its position.
   virtual void word(const Key& key, std::span<const std::string_view> words, std::size_t& x) = 0;
+  virtual void word(const Key& key, std::span<const std::string_view> words,
+                    std::optional<std::size_t>& x) = 0;
   /// [x, y], or with three axes [x, y, z], each in the key's range; z is 0 where there is none.
   virtual void vector(const Key& key, std::size_t axes, std::array<double, 3>& x) = 0;
   /// Six components, or none.
@@ -75,6 +78,8 @@ class Keys {
   /// A list of at least one of several words, as positions; absent: what x holds.
   virtual void word_list(const Key& key, std::span<const std::string_view> words,
                          std::vector<std::size_t>& x) = 0;
+  /// A list of texts; one alone may stand without brackets. Absent: what x holds.
+  virtual void text_list(const Key& key, std::vector<std::string>& x) = 0;
   /// A table [name]; an absent one reads as empty.
   virtual void table(const Key& key, const std::function<void(Keys&)>& below) = 0;
   /// [[name]], at least one unless the key is defaulted: `resize` is told how many there are before
@@ -107,6 +112,21 @@ class Keys {
     auto position = static_cast<std::size_t>(x);
     word(key, words, position);
     x = static_cast<Enum>(position);
+  }
+  template <class Enum>
+  void choice(const Key& key, std::span<const std::string_view> words, std::optional<Enum>& x) {
+    std::optional<std::size_t> position;
+    if (x) position = static_cast<std::size_t>(*x);
+    word(key, words, position);
+    if (position) x = static_cast<Enum>(*position);
+  }
+  template <class Enum>
+  void choices(const Key& key, std::span<const std::string_view> words, std::vector<Enum>& x) {
+    std::vector<std::size_t> positions;
+    for (const Enum e : x) positions.push_back(static_cast<std::size_t>(e));
+    word_list(key, words, positions);
+    x.clear();
+    for (const std::size_t k : positions) x.push_back(static_cast<Enum>(k));
   }
   /// [x, y] where there are never three axes.
   void pair(const Key& key, std::array<double, 2>& x) {

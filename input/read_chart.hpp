@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "input/input_file.hpp"
+#include "input/keys.hpp"
 #include "mpm/scene/scene.hpp"
 
 namespace repose::input {
@@ -43,6 +44,9 @@ struct ChartTable {
   bool quick = false;
   Sweep sweep;  ///< what is not given is empty
 };
+
+/// The keys of [chart].
+void chart_keys(Keys& keys, ChartTable& chart);
 
 /// Reads [chart]; it may be absent. Problems are reported to the file, for its throw_if_bad().
 ChartTable read_chart(InputFile& file);

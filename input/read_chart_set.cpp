@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "input/read_chart.hpp"
-#include "input/toml_reader.hpp"
+#include "input/read_keys.hpp"
 
 namespace repose::input {
 namespace {
@@ -43,8 +43,13 @@ std::vector<std::string> sets_of(const toml::table& entry, PartKind kind) {
     sets.push_back(fmt::format("{}.{}={}", kind == PartKind::stability ? "stability" : "chart",
                                name, value_text(value)));
   }
+  const auto add = [&](const toml::node& one) {
+    if (const auto text = one.value<std::string>()) sets.push_back(*text);
+  };
   if (const toml::array* list = entry["set"].as_array())
-    for (const toml::node& one : *list) sets.push_back(*one.value<std::string>());
+    for (const toml::node& one : *list) add(one);
+  else if (const toml::node* one = entry.get("set"))
+    add(*one);
   return sets;
 }
 
@@ -52,6 +57,13 @@ std::vector<std::string> sets_of(const toml::table& entry, PartKind kind) {
 std::string quoted(const std::string& set) { return fmt::format("--set '{}'", set); }
 
 }  // namespace
+
+void chart_part_keys(Keys& keys, ChartPart& part) {
+  keys.text({"name", "-", "of its sub-folder; the kind by default"}, part.name);
+  keys.choice({"kind", "-", "which chart", {}, required}, part_kinds, part.kind);
+  keys.text({"input", "-", "a file or a shipped scene"}, part.input);
+  keys.text_list({"set", "-", "overrides, as in [\"scene.end_time=0.6\"]"}, part.set);
+}
 
 std::string ChartPart::command() const {
   std::string text =
@@ -77,14 +89,9 @@ ChartSet read_chart_set(InputFile& file, const std::filesystem::path& folder, bo
     reader.expect_any();
     const toml::table* given = (*file.root()["chart"].as_array())[i].as_table();
     ChartPart part;
-    if (!reader.has("kind"))
-      reader.report("kind", fmt::format("{} needs kind, one of {}", reader.path(),
-                                        fmt::join(part_kinds, ", ")));
-    part.kind = static_cast<PartKind>(
-        reader.choice("kind", {part_kinds.begin(), part_kinds.end()}, part_kinds.size()));
-    part.name = reader.text(
-        "name", "of its sub-folder",
-        std::string(part_kinds[static_cast<std::size_t>(part.kind) % part_kinds.size()]));
+    ReadKeys keys(reader);
+    chart_part_keys(keys, part);
+    if (part.name.empty()) part.name = part_kinds[static_cast<std::size_t>(part.kind)];
     if (!is_folder_name(part.name))
       reader.report(
           "name",
@@ -92,13 +99,10 @@ ChartSet read_chart_set(InputFile& file, const std::filesystem::path& folder, bo
     if (std::any_of(set.parts.begin(), set.parts.end(),
                     [&](const ChartPart& other) { return other.name == part.name; }))
       reader.report("name", fmt::format("there are two charts called '{}'", part.name));
-    part.input = found_input(reader.text("input", "a file or a shipped scene", ""), folder);
+    part.input = found_input(part.input, folder);
     if (given->contains("quick") && !(*given)["quick"].is_table())
       reader.report("quick", "quick is a table of the keys that --quick replaces");
     const toml::table entry = entry_as_asked(*given, quick);
-    const toml::array* list = entry["set"].as_array();
-    if (entry.contains("set") && (list == nullptr || !list->is_homogeneous<std::string>()))
-      reader.report("set", "set is a list of texts, as in [\"scene.end_time=0.6\"]");
     part.origin = file.origin(reader.path());
     set.text += "\n[[chart]]\n";
     for (const auto& [key, value] : entry)

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "input/input_file.hpp"
+#include "input/keys.hpp"
 
 namespace repose::input {
 
@@ -17,6 +18,7 @@ struct ChartPart {
   std::string name;  ///< of its sub-folder
   PartKind kind = PartKind::point;
   std::string input;              ///< a file, a shipped scene, or "": the kind's default
+  std::vector<std::string> set;   ///< of the entry
   std::vector<std::string> sets;  ///< the entry's other keys as keys of [chart] or [stability],
                                   ///< then its `set`, as --set takes them
   Origin origin;
@@ -29,6 +31,9 @@ struct ChartSet {
   std::vector<ChartPart> parts;
   std::string text;  ///< as a file: with quick, [chart.quick] has taken its keys' places
 };
+
+/// The keys of a [[chart]] entry beside those of [chart] and [stability].
+void chart_part_keys(Keys& keys, ChartPart& part);
 
 /// Has it [[chart]] entries rather than a [chart] table?
 bool is_chart_set(const InputFile& file);

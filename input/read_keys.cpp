@@ -40,6 +40,11 @@ void ReadKeys::integer(const Key& key, Limits limits, std::int64_t& x) {
                      key.presence == required ? std::nullopt : std::optional(x));
 }
 
+void ReadKeys::integer(const Key& key, Limits limits, std::optional<std::int64_t>& x) {
+  if (wanted(key) && table_.has(key.name))
+    x = table_.integer(key.name, key.doc, limits.lower, limits.upper);
+}
+
 void ReadKeys::boolean(const Key& key, bool& x) {
   if (wanted(key)) x = table_.boolean(key.name, x);
 }
@@ -56,6 +61,11 @@ void ReadKeys::word(const Key& key, std::span<const std::string_view> words, std
                   fmt::format("{} needs {}, one of \"{}\" ({})", table_name(table_.path()),
                               key.name, fmt::join(words, "\", \""), key.doc));
   x = table_.choice(key.name, list_of(words), x);
+}
+
+void ReadKeys::word(const Key& key, std::span<const std::string_view> words,
+                    std::optional<std::size_t>& x) {
+  if (wanted(key) && table_.has(key.name)) x = table_.choice(key.name, list_of(words), 0);
 }
 
 void ReadKeys::vector(const Key& key, std::size_t axes, std::array<double, 3>& x) {
@@ -81,6 +91,33 @@ void ReadKeys::word_list(const Key& key, std::span<const std::string_view> words
                          std::vector<std::size_t>& x) {
   if (!wanted(key)) return;
   if (auto given = table_.choices(key.name, list_of(words))) x = std::move(*given);
+}
+
+void ReadKeys::text_list(const Key& key, std::vector<std::string>& x) {
+  if (!wanted(key)) return;
+  if (!table_.has(key.name)) {
+    if (key.presence == required)
+      table_.report(key.name,
+                    fmt::format("{} needs {} ({})", table_name(table_.path()), key.name, key.doc));
+    return;
+  }
+  const toml::node& node = *table_.get(key.name);
+  std::vector<std::string> texts;
+  bool good = true;
+  const auto add = [&](const toml::node& one) {
+    const auto text = one.value<std::string>();
+    good = good && text && one.is_string();
+    if (text) texts.push_back(*text);
+  };
+  if (const toml::array* list = node.as_array())
+    for (const toml::node& one : *list) add(one);
+  else
+    add(node);
+  if (good && !texts.empty())
+    x = std::move(texts);
+  else
+    table_.report(key.name, fmt::format("{} must be a text or a list of texts ({}); got {}",
+                                        table_.path_of(key.name), key.doc, describe(node)));
 }
 
 void ReadKeys::table(const Key& key, const std::function<void(Keys&)>& below) {

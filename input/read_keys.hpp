@@ -16,14 +16,18 @@ class ReadKeys final : public Keys {
   void number(const Key& key, double& x) override;
   void number(const Key& key, std::optional<double>& x) override;
   void integer(const Key& key, Limits limits, std::int64_t& x) override;
+  void integer(const Key& key, Limits limits, std::optional<std::int64_t>& x) override;
   void boolean(const Key& key, bool& x) override;
   void text(const Key& key, std::string& x) override;
   void word(const Key& key, std::span<const std::string_view> words, std::size_t& x) override;
+  void word(const Key& key, std::span<const std::string_view> words,
+            std::optional<std::size_t>& x) override;
   void vector(const Key& key, std::size_t axes, std::array<double, 3>& x) override;
   void components(const Key& key, std::optional<std::array<double, 6>>& x) override;
   void number_list(const Key& key, std::vector<double>& x) override;
   void word_list(const Key& key, std::span<const std::string_view> words,
                  std::vector<std::size_t>& x) override;
+  void text_list(const Key& key, std::vector<std::string>& x) override;
   void table(const Key& key, const std::function<void(Keys&)>& below) override;
   void tables(const Key& key, std::size_t count, const std::function<void(std::size_t)>& resize,
               const std::function<void(Keys&, std::size_t)>& entry) override;

@@ -3,6 +3,7 @@
 /// A point test: the [law], [initial], [test] and [integration] tables of `repose point`, and those
 /// of them that a fit's targets hold.
 
+#include "input/key_info.hpp"
 #include "input/read_law.hpp"
 #include "pointdriver/integrate/simulate.hpp"
 
@@ -38,6 +39,9 @@ point::Path read_path(TomlReader test, point::Kind& kind, const PathReading& rea
 
 /// strain = "logarithmic" or "engineering".
 point::StrainMeasure read_strain_measure(TomlReader& table, point::StrainMeasure fallback);
+
+/// Every key of a point test.
+std::vector<KeyInfo> point_test_infos();
 
 /// An [integration] table; every key is optional.
 point::Settings read_settings(TomlReader table);

@@ -4,10 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "input/read_keys.hpp"
 #include "input/read_law.hpp"
 #include "input/read_scene.hpp"
 #include "input/resolved_scene.hpp"
 #include "input/shipped_input.hpp"
+#include "input/write_keys.hpp"
 
 namespace repose::input {
 namespace {
@@ -53,25 +55,24 @@ StabilityInput read_stability(InputFile& file) {
     }
   }
   if (root.has("stability")) {
-    TomlReader table = root.table("stability");
-    if (const auto parts =
-            table.choices("parts", {stability_names.begin(), stability_names.end()})) {
-      input.parts.clear();
-      for (const std::size_t k : *parts) input.parts.push_back(static_cast<StabilityPart>(k));
-    }
-    input.p = table.number({"p", "Pa", "pressure of the maps of laws", positive, input.p});
-    input.quick = table.boolean("quick", false);
+    ReadKeys keys(root.table("stability"));
+    stability_keys(keys, input);
   }
   file.throw_if_bad();
   return input;
 }
 
+void stability_keys(Keys& keys, StabilityInput& input) {
+  keys.choices({"parts", "-", "which maps; all by default"}, stability_names, input.parts);
+  keys.number({"p", "Pa", "pressure of the maps of laws", positive}, input.p);
+  keys.boolean({"quick", "-", "coarse maps and short runs"}, input.quick);
+}
+
 std::string stability_text(const StabilityInput& input, const std::string& origin) {
-  std::vector<std::string> parts;
-  for (const StabilityPart part : input.parts)
-    parts.push_back(fmt::format("\"{}\"", stability_names[static_cast<std::size_t>(part)]));
-  std::string text = fmt::format("# {}\n\n[stability]\nparts = [{}]\np = {}  # Pa\nquick = {}\n",
-                                 origin, fmt::join(parts, ", "), input.p, input.quick);
+  StabilityInput copy = input;
+  std::string text = fmt::format("# {}\n", origin) + write_keys([&](Keys& keys) {
+                       keys.table({"stability"}, [&](Keys& k) { stability_keys(k, copy); });
+                     });
   if (input.given == "modified_cam_clay") text += law_table(input.clay, "law");
   if (input.given == "mu_i") text += law_table(input.grains, "law");
   return text;

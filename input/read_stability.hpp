@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "input/input_file.hpp"
+#include "input/keys.hpp"
 #include "models/registry.hpp"
 
 namespace repose::input {
@@ -26,6 +27,9 @@ struct StabilityInput {
 /// Reads it. A [law] table replaces the paper's law of the same name, and then the default of
 /// `parts` is the part of that law alone. Throws BadInput.
 StabilityInput read_stability(InputFile& file);
+
+/// The keys of [stability].
+void stability_keys(Keys& keys, StabilityInput& input);
 
 /// The paper's laws and every part.
 StabilityInput default_stability();

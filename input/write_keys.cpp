@@ -20,12 +20,19 @@ class WriteKeys final : public Keys {
     if (x) line(key, toml_number(*x));
   }
   void integer(const Key& key, Limits, std::int64_t& x) override { line(key, std::to_string(x)); }
+  void integer(const Key& key, Limits, std::optional<std::int64_t>& x) override {
+    if (x) line(key, std::to_string(*x));
+  }
   void boolean(const Key& key, bool& x) override { line(key, x ? "true" : "false"); }
   void text(const Key& key, std::string& x) override {
     if (!x.empty()) line(key, toml_string(x));
   }
   void word(const Key& key, std::span<const std::string_view> words, std::size_t& x) override {
     line(key, toml_string(words[x]));
+  }
+  void word(const Key& key, std::span<const std::string_view> words,
+            std::optional<std::size_t>& x) override {
+    if (x) line(key, toml_string(words[*x]));
   }
   void vector(const Key& key, std::size_t axes, std::array<double, 3>& x) override {
     line(key, toml_vector(x, axes));
@@ -39,6 +46,9 @@ class WriteKeys final : public Keys {
   void word_list(const Key& key, std::span<const std::string_view> words,
                  std::vector<std::size_t>& x) override {
     if (!x.empty()) line(key, list_of(x, [&](std::size_t i) { return toml_string(words[i]); }));
+  }
+  void text_list(const Key& key, std::vector<std::string>& x) override {
+    if (!x.empty()) line(key, list_of(x, toml_string));
   }
   void table(const Key& key, const std::function<void(Keys&)>& below) override {
     add_table(key, "[{}]", below);

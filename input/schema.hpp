@@ -1,0 +1,26 @@
+#pragma once
+/// \file
+/// What the key tables say, for editors and for people.
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "input/key_info.hpp"
+
+namespace repose::input {
+
+enum class SchemaKind : std::uint8_t { scene, test, fit, chart };
+constexpr std::array<std::string_view, 4> schema_names{"scene", "test", "fit", "chart"};
+
+/// Every key of a kind of input.
+std::vector<KeyInfo> keys_of(SchemaKind kind);
+
+/// A JSON Schema (draft 7) that editors complete and check files of this kind from.
+std::string json_schema(SchemaKind kind);
+
+/// The reference page: a table of keys for every table of every kind of input (Markdown).
+std::string key_page();
+
+}  // namespace repose::input
