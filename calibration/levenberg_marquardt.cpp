@@ -28,21 +28,36 @@ std::vector<Index> movable(const VectorXd& z, const VectorXd& g, const std::vect
   return free;
 }
 
-/// min ‖J_f d + r‖² + μ‖D d‖² by QR.
+/// min ‖J_f d + r‖² + μ‖D d‖² by QR, z + d within the cube: what would leave it stops at its bound,
+/// and the others are solved again with that. A coordinate of next to no influence would else take
+/// a share of the others' step that its bounds do not let it go.
 VectorXd damped_step(const MatrixXd& J, const VectorXd& r, const VectorXd& scale,
-                     const std::vector<Index>& free, double mu) {
-  const auto n = static_cast<Index>(free.size());
-  MatrixXd A = MatrixXd::Zero(J.rows() + n, n);
-  VectorXd b = VectorXd::Zero(J.rows() + n);
-  b.head(J.rows()) = -r;
-  for (Index j = 0; j < n; ++j) {
-    const Index k = free[static_cast<std::size_t>(j)];
-    A.col(j).head(J.rows()) = J.col(k);
-    A(J.rows() + j, j) = std::sqrt(mu) * scale[k];
+                     std::vector<Index> free, double mu, const VectorXd& z) {
+  VectorXd step = VectorXd::Zero(J.cols()), rest = r;
+  while (!free.empty()) {
+    const auto n = static_cast<Index>(free.size());
+    MatrixXd A = MatrixXd::Zero(J.rows() + n, n);
+    VectorXd b = VectorXd::Zero(J.rows() + n);
+    b.head(J.rows()) = -rest;
+    for (Index j = 0; j < n; ++j) {
+      const Index k = free[static_cast<std::size_t>(j)];
+      A.col(j).head(J.rows()) = J.col(k);
+      A(J.rows() + j, j) = std::sqrt(mu) * scale[k];
+    }
+    const VectorXd d = A.colPivHouseholderQr().solve(b);
+    std::vector<Index> inside;
+    for (Index j = 0; j < n; ++j) {
+      const Index k = free[static_cast<std::size_t>(j)];
+      const double to = z[k] + d[j];
+      step[k] = std::min(1.0, std::max(0.0, to)) - z[k];
+      if (to >= 0.0 && to <= 1.0)
+        inside.push_back(k);
+      else
+        rest += step[k] * J.col(k);
+    }
+    if (inside.size() == free.size()) break;
+    free = std::move(inside);
   }
-  const VectorXd d = A.colPivHouseholderQr().solve(b);
-  VectorXd step = VectorXd::Zero(J.cols());
-  for (Index j = 0; j < n; ++j) step[free[static_cast<std::size_t>(j)]] = d[j];
   return step;
 }
 
@@ -85,7 +100,7 @@ Optimum levenberg_marquardt(const Problem& problem, const VectorXd& start,
       best.why = "converged";
       break;
     }
-    const VectorXd target = best.z + damped_step(here.J, here.r, D, free, mu);
+    const VectorXd target = best.z + damped_step(here.J, here.r, D, free, mu, best.z);
     const VectorXd z = clipped(target);
     const VectorXd step = z - best.z;
     const double moved = step.cwiseAbs().maxCoeff();

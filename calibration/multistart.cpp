@@ -5,6 +5,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "calibration/uncertainty.hpp"
+
 namespace repose::calibration {
 namespace {
 
@@ -124,6 +126,50 @@ std::vector<Cluster> clusters(const Problem& problem, const std::vector<StartRes
     list.push_back(std::move(c));
   }
   return list;
+}
+
+void settle_priors(Problem& problem, const FitOptions& options, std::vector<StartResult>& starts) {
+  if (problem.prior_weights().size() == 0 || starts.empty() || options.local == "none") return;
+  // by differences an optimiser that minds their noise is the user's choice
+  const bool exact =
+      std::all_of(problem.targets().begin(), problem.targets().end(),
+                  [](const Target& t) { return t.held_out || t.simulator->has_derivatives(); });
+  const auto refit = [&](StartResult& s) {
+    const OptimiseOptions o = local_options(options, s.index);
+    Optimum again = exact ? levenberg_marquardt(problem, s.optimum.z, o)
+                          : optimise(problem, options.local, s.optimum.z, o);
+    again.evaluations += s.optimum.evaluations;
+    again.gradients += s.optimum.gradients;
+    again.seconds += s.optimum.seconds;
+    again.trace = std::move(s.optimum.trace);
+    if (s.optimum.why == "interrupted") again.why = s.optimum.why;
+    s.optimum = std::move(again);
+  };
+  auto best = starts.begin() + (&best_of(starts) - starts.data());
+  StartResult leading = *best;
+  for (int round = 0; round < 40 && !problem.interrupted(); ++round) {
+    const VectorXd before = problem.prior_weights().array().log();
+    VectorXd after = weighed_priors(problem, leading.optimum.z).array().log();
+    // a misfit that counts as noise in one round and not in the next goes half way
+    if (round > 10) after = 0.5 * (before + after);
+    problem.set_prior_weights(after.array().exp());
+    refit(leading);
+    if ((after - before).cwiseAbs().maxCoeff() < 1e-6) break;
+  }
+  tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t k) {
+    if (starts[k].index != leading.index) refit(starts[k]);
+  });
+  *best = std::move(leading);
+}
+
+bool converged(const Problem& problem, const std::vector<StartResult>& starts) {
+  const auto ended = [](const StartResult& s) {
+    return s.optimum.why == "converged" || s.optimum.why == "round-off";
+  };
+  const std::vector<int> same = clusters(problem, starts).front().starts;
+  return std::any_of(starts.begin(), starts.end(), [&](const StartResult& s) {
+    return ended(s) && std::find(same.begin(), same.end(), s.index) != same.end();
+  });
 }
 
 }  // namespace repose::calibration

@@ -1,5 +1,6 @@
 #include "calibration/parameter_space.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -12,19 +13,6 @@ using Eigen::VectorXd;
 
 Index at(std::size_t i) { return static_cast<Index>(i); }
 
-/// The coordinate x of one parameter, and dx/dz.
-struct Coordinate {
-  double x, slope;
-};
-Coordinate coordinate(const FreeParameter& p, double z) {
-  if (p.scale == Scale::log) {
-    const double ratio = std::log(p.upper / p.lower);
-    const double x = p.lower * std::exp(z * ratio);
-    return {x, x * ratio};
-  }
-  return {p.lower + z * (p.upper - p.lower), p.upper - p.lower};
-}
-
 /// i in base b with its digits mirrored at the point: 6 = 110 (base 2) → 0.011 = 0.375
 double radical_inverse(std::size_t i, std::size_t base) {
   double inverse = 0.0, digit = 1.0 / static_cast<double>(base);
@@ -36,27 +24,66 @@ double radical_inverse(std::size_t i, std::size_t base) {
 }  // namespace
 
 ParameterSpace::ParameterSpace(std::vector<FreeParameter> parameters)
-    : parameters_(std::move(parameters)) {
+    : parameters_(std::move(parameters)),
+      held_(parameters_.size()) {
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const FreeParameter& p = parameters_[i];
     if (!std::isfinite(p.lower) || !std::isfinite(p.upper) || !(p.lower < p.upper))
       throw InputError(p.name, p.name + " needs finite bounds with lower < upper");
     if (p.scale == Scale::log && !(p.lower > 0.0))
       throw InputError(p.name, p.name + ": a logarithmic scale needs lower > 0");
-    if (p.of >= static_cast<int>(i))
+    if (p.start && !(*p.start >= p.lower && *p.start <= p.upper))
+      throw InputError(p.name, p.name + ": start must lie within lower and upper");
+    if (p.of >= static_cast<int>(i) || p.below >= static_cast<int>(i))
       throw InputError(p.name, p.name + " is a ratio to a parameter that must come before it");
     if (p.prior && !(p.prior->sd > 0.0 && std::isfinite(p.prior->mean)))
       throw InputError(p.name, p.name + ": a prior needs a finite mean and sd > 0");
-    if (p.prior && p.scale == Scale::log && !(p.prior->mean > 0.0))
-      throw InputError(p.name, p.name + ": a prior on a logarithmic scale needs mean > 0");
+    if (p.prior && p.prior->relative && !(p.prior->mean > 0.0))
+      throw InputError(p.name, p.name + ": a prior with a relative sd needs mean > 0");
+    room_.push_back({p.lower, p.upper});
+    if (p.below < 0) continue;
+    // what lies above has to leave room for the lowest value of what lies below
+    auto& above = room_[static_cast<std::size_t>(p.below)];
+    const FreeParameter& partner = parameters_[static_cast<std::size_t>(p.below)];
+    above[0] = std::max(above[0], p.lower / below_share);
+    if (!(above[0] < above[1]))
+      throw InputError(p.name, p.name + " must be less than " + partner.name + ", but its lower " +
+                                   "bound leaves none of the bounds of " + partner.name);
   }
+}
+
+std::array<double, 2> ParameterSpace::bounds(std::size_t i, const VectorXd& values) const {
+  const FreeParameter& p = parameters_[i];
+  std::array<double, 2> b = room_[i];
+  if (p.below >= 0) b[1] = std::max(b[0], std::min(b[1], below_share * values[p.below]));
+  return b;
+}
+
+ParameterSpace::Coordinate ParameterSpace::coordinate(std::size_t i, double z,
+                                                      const VectorXd& values) const {
+  const FreeParameter& p = parameters_[i];
+  const auto [low, high] = bounds(i, values);
+  const bool capped = p.below >= 0 && high < room_[i][1] && high > low;
+  if (p.scale == Scale::log) {
+    const double ratio = std::log(high / low);
+    const double x = low * std::exp(z * ratio);
+    return {x, x * ratio, capped ? below_share * z * x / high : 0.0};
+  }
+  return {low + z * (high - low), high - low, capped ? below_share * z : 0.0};
+}
+
+double ParameterSpace::inverse(std::size_t i, double x, const VectorXd& values) const {
+  const auto [low, high] = bounds(i, values);
+  if (!(high > low)) return 0.0;
+  return parameters_[i].scale == Scale::log ? std::log(x / low) / std::log(high / low)
+                                            : (x - low) / (high - low);
 }
 
 VectorXd ParameterSpace::values(const VectorXd& z) const {
   VectorXd v(at(size()));
   for (std::size_t i = 0; i < size(); ++i) {
     const FreeParameter& p = parameters_[i];
-    v[at(i)] = coordinate(p, z[at(i)]).x * (p.of < 0 ? 1.0 : v[p.of]);
+    v[at(i)] = held_[i] ? *held_[i] : coordinate(i, z[at(i)], v).x * (p.of < 0 ? 1.0 : v[p.of]);
   }
   return v;
 }
@@ -65,9 +92,11 @@ Eigen::MatrixXd ParameterSpace::slopes(const VectorXd& z) const {
   const VectorXd v = values(z);
   Eigen::MatrixXd d = Eigen::MatrixXd::Zero(at(size()), at(size()));
   for (std::size_t i = 0; i < size(); ++i) {
+    if (held_[i]) continue;
     const FreeParameter& p = parameters_[i];
-    const Coordinate c = coordinate(p, z[at(i)]);
+    const Coordinate c = coordinate(i, z[at(i)], v);
     if (p.of >= 0) d.row(at(i)) = c.x * d.row(p.of);
+    if (p.below >= 0) d.row(at(i)) = c.by_partner * d.row(p.below);
     d(at(i), at(i)) = c.slope * (p.of < 0 ? 1.0 : v[p.of]);
   }
   return d;
@@ -77,24 +106,64 @@ VectorXd ParameterSpace::coordinates(const VectorXd& values) const {
   VectorXd z(at(size()));
   for (std::size_t i = 0; i < size(); ++i) {
     const FreeParameter& p = parameters_[i];
-    const double x = values[at(i)] / (p.of < 0 ? 1.0 : values[p.of]);
-    z[at(i)] = p.scale == Scale::log ? std::log(x / p.lower) / std::log(p.upper / p.lower)
-                                     : (x - p.lower) / (p.upper - p.lower);
+    z[at(i)] = held_[i] ? 0.5 : inverse(i, values[at(i)] / (p.of < 0 ? 1.0 : values[p.of]), values);
   }
   return z;
 }
 
 VectorXd ParameterSpace::start() const {
-  VectorXd z = VectorXd::Constant(at(size()), 0.5);
+  VectorXd z = VectorXd::Constant(at(size()), 0.5), v(at(size()));
   for (std::size_t i = 0; i < size(); ++i) {
     const FreeParameter& p = parameters_[i];
-    if (!p.start) continue;
-    if (p.scale == Scale::log)  // what is not positive lies below the lower bound
-      z[at(i)] = *p.start > 0.0 ? std::log(*p.start / p.lower) / std::log(p.upper / p.lower) : 0.0;
-    else
-      z[at(i)] = (*p.start - p.lower) / (p.upper - p.lower);
+    if (p.start && !held_[i]) z[at(i)] = std::min(1.0, std::max(0.0, inverse(i, *p.start, v)));
+    v[at(i)] = held_[i] ? *held_[i] : coordinate(i, z[at(i)], v).x * (p.of < 0 ? 1.0 : v[p.of]);
   }
-  return clipped(z);
+  return z;
+}
+
+std::array<double, 2> ParameterSpace::reach(std::size_t i) const {
+  const FreeParameter& p = parameters_[i];
+  if (p.of >= 0) {
+    // a ratio may be negative only where a user gives it such bounds
+    const auto& other = room_[static_cast<std::size_t>(p.of)];
+    const std::array<double, 4> corner{room_[i][0] * other[0], room_[i][0] * other[1],
+                                       room_[i][1] * other[0], room_[i][1] * other[1]};
+    return {*std::min_element(corner.begin(), corner.end()),
+            *std::max_element(corner.begin(), corner.end())};
+  }
+  std::array<double, 2> b = room_[i];
+  if (p.below >= 0)
+    b[1] = std::min(b[1], below_share * room_[static_cast<std::size_t>(p.below)][1]);
+  return b;
+}
+
+std::optional<ParameterSpace> ParameterSpace::held(std::size_t i, double value) const {
+  ParameterSpace space = *this;
+  const FreeParameter& p = parameters_[i];
+  space.held_[i] = value;
+  if (p.of >= 0) {
+    auto& other = space.room_[static_cast<std::size_t>(p.of)];
+    if (!(value > 0.0) || !(other[0] >= 0.0)) return {};
+    if (room_[i][0] > 0.0) other[1] = std::min(other[1], value / room_[i][0]);
+    other[0] = std::max(other[0], value / room_[i][1]);
+    if (!(other[0] < other[1])) return {};
+    return space;
+  }
+  if (!(value >= room_[i][0] && value <= room_[i][1])) return {};
+  if (p.below >= 0) {
+    auto& other = space.room_[static_cast<std::size_t>(p.below)];
+    other[0] = std::max(other[0], value / below_share);
+    if (!(other[0] < other[1])) return {};
+  }
+  return space;
+}
+
+ParameterSpace ParameterSpace::with_prior_means(const VectorXd& means) const {
+  ParameterSpace space = *this;
+  Index row = 0;
+  for (FreeParameter& p : space.parameters_)
+    if (p.prior) p.prior->mean = means[row++];
+  return space;
 }
 
 VectorXd ParameterSpace::spread_point(std::size_t k, std::uint64_t seed) const {
@@ -125,9 +194,10 @@ void ParameterSpace::priors(const VectorXd& z, Eigen::Ref<VectorXd> r,
   for (std::size_t i = 0; i < size(); ++i) {
     const FreeParameter& p = parameters_[i];
     if (!p.prior) continue;
-    const bool log = p.scale == Scale::log;
-    r[row] = (log ? std::log(v[at(i)] / p.prior->mean) : v[at(i)] - p.prior->mean) / p.prior->sd;
-    if (J != nullptr) J->row(row) = slope.row(at(i)) / (p.prior->sd * (log ? v[at(i)] : 1.0));
+    const bool relative = p.prior->relative;
+    r[row] =
+        (relative ? std::log(v[at(i)] / p.prior->mean) : v[at(i)] - p.prior->mean) / p.prior->sd;
+    if (J != nullptr) J->row(row) = slope.row(at(i)) / (p.prior->sd * (relative ? v[at(i)] : 1.0));
     ++row;
   }
 }

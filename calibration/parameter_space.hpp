@@ -5,9 +5,11 @@
 ///
 ///   linear   x = lower + z (upper − lower)
 ///   log      x = lower (upper/lower)^z
-/// A parameter may be given as a ratio to another, value = x · value(other): κ = x λ with x in
-/// (0, 1) keeps κ < λ for every z.
+/// A parameter may be given as a ratio to another, value = x · value(other), or be kept below
+/// another, upper = min(upper, 0.999 value(other)): both keep κ < λ for every z, the second within
+/// bounds of the values themselves.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,13 +20,16 @@
 
 namespace repose::calibration {
 
-/// A penalty that keeps a value near what is known from elsewhere: the residual
-/// (value − mean)/sd, or ln(value/mean)/sd where the parameter's scale is log (sd is then
-/// relative).
+/// What is known of a value from elsewhere: the residual (value − mean)/sd with sd in the
+/// parameter's own unit, whatever its scale, or ln(value/mean)/sd if sd is relative.
 struct Prior {
   double mean = 0.0;
   double sd = 1.0;
+  bool relative = false;
 };
+
+/// A value kept below another is at most this share of it.
+inline constexpr double below_share = 0.999;
 
 struct FreeParameter {
   std::string name;  ///< "M", "ocr of A7"
@@ -35,13 +40,15 @@ struct FreeParameter {
   int of = -1;                  ///< x is a ratio to this earlier parameter; −1: x is the value
   std::optional<double> start;  ///< of the coordinate x; default: the middle of its scale
   std::optional<Prior> prior;   ///< on the value
+  int below = -1;               ///< the value stays below that of this earlier parameter
 };
 
 class ParameterSpace {
  public:
   ParameterSpace() = default;
   /// Errors: InputError (key = the parameter's name) for bounds that are not finite or not in
-  /// order, log bounds that are not positive, a ratio to a later parameter, a prior without sd > 0.
+  /// order, log bounds that are not positive, a start outside its bounds, a ratio to a later
+  /// parameter, an order that the bounds leave no room for, a prior without sd > 0.
   explicit ParameterSpace(std::vector<FreeParameter> parameters);
 
   std::size_t size() const { return parameters_.size(); }
@@ -54,8 +61,16 @@ class ParameterSpace {
   Eigen::MatrixXd slopes(const Eigen::VectorXd& z) const;
   /// z of given values, not clipped. Values whose logarithm is needed must be positive.
   Eigen::VectorXd coordinates(const Eigen::VectorXd& values) const;
-  /// z of the starting values, clipped into the cube: a start outside its bounds begins on them.
+  /// z of the starting values, clipped into the cube.
   Eigen::VectorXd start() const;
+
+  /// What a value can be within all bounds, those of its partner included.
+  std::array<double, 2> reach(std::size_t i) const;
+  /// This space with the value of one parameter held: its coordinate does nothing, and its partner
+  /// keeps to what is left of its bounds. Nothing if the value is out of reach.
+  std::optional<ParameterSpace> held(std::size_t i, double value) const;
+  /// This space with other means of the priors, in the order of the parameters that have one.
+  ParameterSpace with_prior_means(const Eigen::VectorXd& means) const;
   /// The k-th point of a low-discrepancy sequence (Halton 1960 with a random shift by `seed`,
   /// Cranley & Patterson 1976); the same (k, seed) gives the same point.
   Eigen::VectorXd spread_point(std::size_t k, std::uint64_t seed) const;
@@ -66,7 +81,19 @@ class ParameterSpace {
               Eigen::Ref<Eigen::MatrixXd>* J) const;
 
  private:
+  /// The coordinate x of one parameter given the values of earlier ones, its slope, and the slope
+  /// by its partner's value where that bounds it.
+  struct Coordinate {
+    double x, slope, by_partner;
+  };
+  Coordinate coordinate(std::size_t i, double z, const Eigen::VectorXd& values) const;
+  /// Bounds of x given the values of earlier ones.
+  std::array<double, 2> bounds(std::size_t i, const Eigen::VectorXd& values) const;
+  double inverse(std::size_t i, double x, const Eigen::VectorXd& values) const;
+
   std::vector<FreeParameter> parameters_;
+  std::vector<std::array<double, 2>> room_;  ///< bounds of x with what a partner leaves of them
+  std::vector<std::optional<double>> held_;
 };
 
 /// z moved into the cube.

@@ -94,6 +94,17 @@ class PointSimulator final : public Simulator {
   const std::vector<std::string>& inputs() const override { return names_; }
   bool has_derivatives() const override { return exact_; }
 
+  std::shared_ptr<const Simulator> with_abscissae_times(double factor) const override {
+    if (e_.rows != Rows::at_data) return {};
+    PointExperiment other = e_;
+    for (double& x : other.abscissae) x *= factor;
+    try {
+      return std::make_shared<PointSimulator>(std::move(other));
+    } catch (const InputError&) {  // not on the way of the test
+      return {};
+    }
+  }
+
   void simulate(std::span<const double> inputs, std::span<const int> wanted,
                 Response& response) const override {
     Scratch& scratch = scratch_.local();

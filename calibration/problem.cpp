@@ -21,6 +21,7 @@ Problem::Problem(const Problem& other)
       balance_(other.balance_),
       interrupted_(other.interrupted_) {
   lay_out();
+  prior_weights_ = other.prior_weights_;
 }
 
 void Problem::lay_out() {
@@ -68,6 +69,13 @@ void Problem::lay_out() {
     ++row;
   }
   size_ = row + static_cast<Index>(space_.prior_count());
+  double variance = 0.0;
+  for (const Block& b : blocks_) {
+    const bool declared = targets_[b.target].channels[b.channel].noise.has_value();
+    variance += static_cast<double>(b.rows) * b.factor * b.factor * (declared ? 1.0 : 1e-4);
+  }
+  prior_weights_ = VectorXd::Constant(static_cast<Index>(space_.prior_count()),
+                                      variance / static_cast<double>(data_rows_));
 }
 
 void Problem::note_failure(std::string_view reason) const {
@@ -177,9 +185,11 @@ void Problem::evaluate(const VectorXd& z_given, bool with_J, Evaluation& out) co
     if (with_J) {
       Eigen::Ref<MatrixXd> J = out.J.bottomRows(priors);
       space_.priors(z, out.r.tail(priors), &J);
+      J = prior_weights_.cwiseSqrt().asDiagonal() * J;
     } else {
       space_.priors(z, out.r.tail(priors), nullptr);
     }
+    out.r.tail(priors).array() *= prior_weights_.array().sqrt();
   }
 }
 
@@ -205,7 +215,37 @@ Problem Problem::with_observed(const std::vector<MatrixXd>& observed) const {
       channel.observed = observed[k].col(static_cast<Index>(c));
     }
   copy.lay_out();
+  copy.prior_weights_ = prior_weights_;
   return copy;
+}
+
+Problem Problem::with_space(ParameterSpace space) const {
+  Problem copy(*this);
+  copy.space_ = std::move(space);
+  return copy;
+}
+
+Problem Problem::with_simulators(std::vector<std::shared_ptr<const Simulator>> simulators) const {
+  Problem copy(*this);
+  for (std::size_t k = 0; k < copy.targets_.size(); ++k)
+    copy.targets_[k].simulator = std::move(simulators[k]);
+  return copy;
+}
+
+void Problem::set_prior_weights(VectorXd weights) {
+  for (const double w : weights)
+    if (!(w > 0.0 && std::isfinite(w)))
+      throw InputError("prior", "a prior's weight must be positive");
+  prior_weights_ = std::move(weights);
+}
+
+void Problem::account(const Problem& copy) const {
+  const Spent spent = copy.spent();
+  evaluations_ += spent.evaluations;
+  gradients_ += spent.gradients;
+  paths_ += spent.paths;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [reason, n] : spent.failures) failures_[reason] += n;
 }
 
 }  // namespace repose::calibration

@@ -67,6 +67,20 @@ class Problem {
 
   /// A copy with other measured values (bootstrap): observed[k] is rows × channels of target k.
   Problem with_observed(const std::vector<Eigen::MatrixXd>& observed) const;
+  /// A copy over another space of as many parameters: one held, other means of priors.
+  Problem with_space(ParameterSpace space) const;
+  /// A copy with other simulators, one per target.
+  Problem with_simulators(std::vector<std::shared_ptr<const Simulator>> simulators) const;
+
+  /// What each prior counts beside the data: its residual is multiplied by √weight. The data's
+  /// residuals are in units of their noise only where that was declared and is kept to; a prior's
+  /// weight is the variance of theirs (weigh_priors in uncertainty.hpp). At first 1, or
+  /// that of a noise of 1 % of the range where none is declared.
+  const Eigen::VectorXd& prior_weights() const { return prior_weights_; }
+  void set_prior_weights(Eigen::VectorXd weights);
+
+  /// Adds what a copy has spent to this one's account.
+  void account(const Problem& copy) const;
 
   Problem(const Problem& other);
   Problem& operator=(const Problem&) = delete;
@@ -85,6 +99,7 @@ class Problem {
   std::vector<Block> blocks_;
   std::vector<Eigen::Index> first_;  ///< per target, −1 if held out
   std::vector<double> penalty_;      ///< per target
+  Eigen::VectorXd prior_weights_;    ///< one per prior
   Eigen::Index size_ = 0, data_rows_ = 0;
   std::function<bool()> interrupted_;
   mutable std::atomic<long> evaluations_{0}, gradients_{0}, paths_{0};

@@ -3,6 +3,7 @@
 /// What a fit needs of anything that can be simulated: named inputs in, channels of rows out. The
 /// point driver stands behind it in point_simulator.hpp; a full simulation may too.
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +39,9 @@ class Simulator {
   virtual double difference_step() const { return 1e-5; }
   /// Simulates. wanted: positions of the inputs to differentiate by; empty for none. Never throws
   /// for numbers; must be callable from several threads at once.
+  /// The same experiment with its abscissae multiplied, to tell whether a misfit is one of units;
+  /// nothing where they are not its own or lead nowhere.
+  virtual std::shared_ptr<const Simulator> with_abscissae_times(double) const { return {}; }
   virtual void simulate(std::span<const double> inputs, std::span<const int> wanted,
                         Response& response) const = 0;
 };

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <tbb/parallel_for.h>
 
 namespace repose::calibration {
 namespace {
@@ -28,12 +26,6 @@ double lag_correlation(const VectorXd& r) {
 
 bool correlated(double rho, Index n) {
   return n >= 4 && rho > 2.0 / std::sqrt(static_cast<double>(n));
-}
-
-/// Var(mean of a correlated series) over that of a white one, at most that of n equal values.
-double correlation_factor(double rho, Index n) {
-  if (!correlated(rho, n)) return 1.0;
-  return std::min((1.0 + rho) / (1.0 - rho), static_cast<double>(n));
 }
 
 std::string percent(double x) {
@@ -67,15 +59,6 @@ std::string in_words(const ParameterSpace& space, const VectorXd& direction, dou
 }
 
 }  // namespace
-
-double t_quantile(double n) {
-  if (!(n >= 1.0)) return infinity;
-  if (n < 3.0) return n < 2.0 ? 12.706 : 4.303;
-  // Abramowitz & Stegun 26.7.5
-  const double x = 1.959963985, x2 = x * x;
-  return x * (1.0 + (x2 + 1.0) / (4.0 * n) + ((5.0 * x2 + 16.0) * x2 + 3.0) / (96.0 * n * n) +
-              (((3.0 * x2 + 19.0) * x2 + 17.0) * x2 - 15.0) / (384.0 * n * n * n));
-}
 
 std::vector<ChannelScore> score(const Problem& problem, const VectorXd& z) {
   std::vector<ChannelScore> scores;
@@ -111,8 +94,13 @@ std::vector<ChannelScore> score(const Problem& problem, const VectorXd& z) {
           channel.noise && scatter > 1.0 + 2.33 * std::sqrt(2.0 / static_cast<double>(n));
       s.variance = channel.noise && !beyond ? 1.0 : scatter;
       // what the integrator leaves (1e-8 and less) is smooth as well, and no discrepancy
-      s.systematic = beyond || (n >= 8 && s.lag_correlation > 0.5 &&
-                                correlated(s.lag_correlation, n) && s.relative_rms > 1e-6);
+      const double size = range > 0.0
+                              ? s.relative_rms
+                              : s.rms / std::max(channel.observed.cwiseAbs().maxCoeff(), 1e-300);
+      s.large = size > 0.1 && !(channel.noise && !beyond);
+      s.systematic = beyond || s.large ||
+                     (n >= 8 && s.lag_correlation > 0.5 && correlated(s.lag_correlation, n) &&
+                      s.relative_rms > 1e-6);
       for (const Block& b : problem.blocks())
         if (b.target == k && b.channel == c)
           s.objective = 0.5 * b.factor * b.factor * r.squaredNorm();
@@ -122,6 +110,137 @@ std::vector<ChannelScore> score(const Problem& problem, const VectorXd& z) {
   return scores;
 }
 
+namespace {
+
+/// The linear problem at an optimum, of some coordinates.
+struct Linear {
+  std::vector<Index> columns;
+  MatrixXd pseudo;        ///< J⁺ (coordinates × rows), without what the data do not determine
+  MatrixXd U;             ///< rows × determined directions, orthonormal
+  MatrixXd inverse;       ///< (JᵀJ)⁺ of all n coordinates
+  VectorXd undetermined;  ///< per coordinate: 1 where the data say nothing
+  VectorXd bounded;       ///< variance that the bounds leave along directions not determined
+};
+
+/// scatter: of the residuals in r.
+Linear linearised(const MatrixXd& J, const std::vector<Index>& columns, double scatter) {
+  const Index n = J.cols(), m = static_cast<Index>(columns.size());
+  Linear l;
+  l.columns = columns;
+  l.pseudo = MatrixXd::Zero(n, J.rows());
+  l.inverse = MatrixXd::Zero(n, n);
+  l.undetermined = l.bounded = VectorXd::Zero(n);
+  l.U.resize(J.rows(), 0);
+  if (m == 0) return l;
+  MatrixXd A(J.rows(), m);
+  for (Index j = 0; j < m; ++j) A.col(j) = J.col(columns[static_cast<std::size_t>(j)]);
+  // z runs over the bounds: a singular value is what a walk across all of them does to r. What
+  // lies below 1e-8 of the largest are the last digits of the path.
+  const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const VectorXd& s = svd.singularValues();
+  const double limit = std::max({0.1 * scatter, 1e-8 * s[0], 1e-280});
+  Index rank = 0;
+  while (rank < s.size() && s[rank] > limit) ++rank;
+  l.U = svd.matrixU().leftCols(rank);
+  const MatrixXd V = svd.matrixV();
+  const MatrixXd part = V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
+  const MatrixXd pseudo = part * l.U.transpose(), inverse = part * part.transpose();
+  for (Index i = 0; i < m; ++i) {
+    const Index a = columns[static_cast<std::size_t>(i)];
+    l.pseudo.row(a) = pseudo.row(i);
+    for (Index j = 0; j < m; ++j)
+      l.inverse(a, columns[static_cast<std::size_t>(j)]) = inverse(i, j);
+    const double lost = 1.0 - std::min(1.0, V.row(i).head(rank).squaredNorm());
+    // a tenth of the way along a direction that is free to go anywhere
+    if (lost > 0.01) l.undetermined[a] = 1.0;
+    if (lost > 1e-14) l.bounded[a] = lost / 12.0;  // even over the bounds
+  }
+  return l;
+}
+
+/// Scatter of the data's residuals before anything is known of their correlation.
+double rough_scatter(const Problem& problem, const VectorXd& r) {
+  double total = 0.0;
+  for (const Block& b : problem.blocks()) {
+    const double seen = r.segment(b.first, b.rows).squaredNorm() / static_cast<double>(b.rows);
+    const bool declared = problem.targets()[b.target].channels[b.channel].noise.has_value();
+    total += static_cast<double>(b.rows) * std::max(seen, declared ? b.factor * b.factor : 0.0);
+  }
+  return std::sqrt(total / static_cast<double>(problem.data_rows()));
+}
+
+/// The optimum, its active bounds and its noise.
+struct Optimal {
+  Evaluation e;
+  std::vector<int> at_bound;
+  std::vector<Index> inside;
+  double scatter = 1.0;
+  Linear linear;
+  Noise noise;
+};
+
+Optimal optimal(const Problem& problem, const VectorXd& z) {
+  Optimal o;
+  problem.evaluate(z, true, o.e);
+  // a bound that stops a parameter is not a measurement of it
+  const VectorXd gradient = o.e.J.transpose() * o.e.r;
+  for (Index i = 0; i < problem.parameters(); ++i) {
+    const bool low = z[i] < at_bound_distance && gradient[i] >= 0.0;
+    const bool high = z[i] > 1.0 - at_bound_distance && gradient[i] <= 0.0;
+    o.at_bound.push_back(low ? -1 : (high ? 1 : 0));
+    if (!low && !high) o.inside.push_back(i);
+  }
+  o.scatter = rough_scatter(problem, o.e.r);
+  o.linear = linearised(o.e.J, o.inside, o.scatter);
+  o.noise = estimate_noise(problem, o.e.r, o.linear.U);
+  return o;
+}
+
+/// Where the excess ((x + outside)² − outside²)/error² of a value x away from the best one reaches
+/// what a 95 % interval holds. room: to the bound on this side; behind: from the best value to the
+/// bound on the other side.
+double reach_of(double error, double outside, double freedom, double room, double behind,
+                bool bounded) {
+  const auto open = [&](double x) {
+    const double excess = x * (x + 2.0 * outside) / (error * error);
+    return excess < (bounded ? critical_excess(freedom, (room - x) / error, (behind + x) / error)
+                             : critical_excess(freedom, infinity, infinity));
+  };
+  if (open(room)) return room;
+  double low = 0.0, high = room;
+  const double far = t_quantile(freedom) * error;
+  if (far < high) high = far * (1.0 + 1e-12);  // never further than a two-sided interval
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (open(middle) ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+VectorXd weighed_priors(const Problem& problem, const VectorXd& z) {
+  const ParameterSpace& space = problem.space();
+  const Optimal o = optimal(problem, z);
+  const MatrixXd slopes = space.slopes(z);
+  const MatrixXd data = o.e.J.topRows(problem.size() - problem.prior_weights().size());
+  VectorXd weights(problem.prior_weights().size());
+  Index row = 0;
+  for (std::size_t i = 0; i < space.size(); ++i) {
+    if (!space[i].prior) continue;
+    const VectorXd d = o.linear.inverse * slopes.row(static_cast<Index>(i)).transpose();
+    MatrixXd a = MatrixXd::Zero(o.e.J.rows(), 1);
+    a.topRows(data.rows()) = data * d;
+    const double information = a.squaredNorm();
+    // nothing from the data, or at a bound: any weight will do
+    const bool none = !(information > 1e-12 * d.squaredNorm() * o.scatter * o.scatter);
+    weights[row] = none ? o.noise.mean_variance() : o.noise.variance(a)(0, 0) / information;
+    weights[row] = std::max(weights[row], 1e-280);
+    ++row;
+  }
+  return weights;
+}
+
 Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
                         const VectorXd& simulator_error) {
   const ParameterSpace& space = problem.space();
@@ -129,104 +248,89 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
   Uncertainty u;
   u.values = space.values(z);
   u.channels = score(problem, z);
-  u.freedom = std::max<Index>(1, problem.data_rows() - n);
-  Evaluation e;
-  problem.evaluate(z, true, e);
-  // a bound that stops a parameter is not a measurement of it
-  std::vector<Index> inside;
-  const VectorXd gradient = e.J.transpose() * e.r;
-  for (Index i = 0; i < n; ++i) {
-    const bool low = z[i] < at_bound_distance && gradient[i] >= 0.0;
-    const bool high = z[i] > 1.0 - at_bound_distance && gradient[i] <= 0.0;
-    u.at_bound.push_back(low ? -1 : (high ? 1 : 0));
-    if (!low && !high) inside.push_back(i);
-  }
+  Optimal o = optimal(problem, z);
+  const Evaluation& e = o.e;
+  const std::vector<Index>& inside = o.inside;
   const auto m = static_cast<Index>(inside.size());
-  MatrixXd J(e.J.rows(), m);
-  for (Index j = 0; j < m; ++j) J.col(j) = e.J.col(inside[static_cast<std::size_t>(j)]);
-  // meat: variance of each residual in r's units; priors and penalties have variance 1
-  VectorXd white = VectorXd::Ones(J.rows()), full = white;
+  u.at_bound = o.at_bound;
+  u.noise = std::move(o.noise);
+  u.freedom = std::max<Index>(1, problem.data_rows() - o.linear.U.cols());
   bool all_declared = true;
-  double total = 0.0, rows = 0.0;
-  for (const Block& b : problem.blocks()) {
-    const Channel& channel = problem.targets()[b.target].channels[b.channel];
-    all_declared = all_declared && channel.noise.has_value();
-    for (const ChannelScore& s : u.channels) {
-      if (s.target != b.target || s.channel != b.channel) continue;
-      const double v = b.factor * b.factor * s.variance;
-      white.segment(b.first, b.rows).setConstant(v);
-      full.segment(b.first, b.rows).setConstant(v * correlation_factor(s.lag_correlation, b.rows));
-      total += v * static_cast<double>(b.rows);
-      rows += static_cast<double>(b.rows);
-    }
+  for (const ChannelNoise& c : u.noise.channels) {
+    all_declared = all_declared && c.declared;
+    for (ChannelScore& s : u.channels)
+      if (s.target == c.block.target && s.channel == c.block.channel)
+        s.variance = c.sd * c.sd / (c.block.factor * c.block.factor);
   }
-  u.quantile = all_declared ? 1.959963985 : t_quantile(static_cast<double>(u.freedom));
+  u.quantile = all_declared ? t_quantile(infinity) : t_quantile(static_cast<double>(u.freedom));
 
-  MatrixXd cov = MatrixXd::Zero(n, n), cov_white = cov;
-  VectorXd unknown = VectorXd::Zero(n);
-  u.shift = unknown;
-  if (m > 0) {
-    const VectorXd size = J.colwise().norm().transpose().cwiseMax(1e-300);
-    const Eigen::JacobiSVD<MatrixXd> svd(J * size.cwiseInverse().asDiagonal(),
-                                         Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const VectorXd& sigma = svd.singularValues();
-    VectorXd inverse = VectorXd::Zero(sigma.size());
-    MatrixXd lost = MatrixXd::Zero(m, 1);
-    const double limit = 1e-9 * std::max(sigma[0], 1e-300);
-    for (Index k = 0; k < sigma.size(); ++k) {
-      if (sigma[k] > limit && sigma[0] > 1e-290)
-        inverse[k] = 1.0 / sigma[k];
-      else
-        lost += svd.matrixV().col(k).cwiseAbs2();
-    }
-    const MatrixXd pseudo = size.cwiseInverse().asDiagonal() * svd.matrixV() *
-                            inverse.asDiagonal() * svd.matrixU().transpose();
-    MatrixXd c_full = pseudo * full.asDiagonal() * pseudo.transpose();
-    if (simulator_error.size() == J.rows()) {
-      const VectorXd shift = -pseudo * simulator_error;
-      c_full += shift * shift.transpose();
-      for (Index i = 0; i < m; ++i) u.shift[inside[static_cast<std::size_t>(i)]] = shift[i];
-    }
-    const MatrixXd c_white = pseudo * white.asDiagonal() * pseudo.transpose();
-    for (Index i = 0; i < m; ++i) {
-      const Index a = inside[static_cast<std::size_t>(i)];
-      if (lost(i, 0) > 1e-6 || e.J.col(a).norm() == 0.0) unknown[a] = 1.0;
-      for (Index j = 0; j < m; ++j) {
-        const Index b = inside[static_cast<std::size_t>(j)];
-        cov(a, b) = c_full(i, j);
-        cov_white(a, b) = c_white(i, j);
-      }
-    }
-  }
   const MatrixXd slopes = space.slopes(z);
-  const MatrixXd value_cov = slopes * cov * slopes.transpose();
-  u.shift = slopes * u.shift;
+  const bool erring = simulator_error.size() == e.J.rows();
+  const VectorXd shift_z =
+      erring ? VectorXd(-o.linear.pseudo * simulator_error) : VectorXd(VectorXd::Zero(n));
+  u.shift = slopes * shift_z;
+  MatrixXd cov = u.noise.variance(o.linear.pseudo.transpose());
+  cov.diagonal() += o.linear.bounded;
+  MatrixXd cov_white = u.noise.white_variance(o.linear.pseudo.transpose());
+  const MatrixXd value_cov = slopes * cov * slopes.transpose() + u.shift * u.shift.transpose();
   const MatrixXd value_white = slopes * cov_white * slopes.transpose();
   u.standard_error = value_cov.diagonal().cwiseSqrt();
   u.white_error = value_white.diagonal().cwiseSqrt();
+  u.released_error = u.freedoms = u.quantiles = u.beyond_bound = u.naive = VectorXd::Zero(n);
   u.correlation = MatrixXd::Identity(n, n);
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
       const double d = u.standard_error[i] * u.standard_error[j];
       if (i != j) u.correlation(i, j) = d > 0.0 && std::isfinite(d) ? value_cov(i, j) / d : 0.0;
-      if (slopes(i, j) != 0.0 && unknown[j] > 0.0)
-        u.standard_error[i] = u.white_error[i] = infinity;
     }
+  }
+  for (Index i = 0; i < n; ++i) {
     const FreeParameter& p = space[static_cast<std::size_t>(i)];
-    const double of = p.of < 0 ? 1.0 : u.values[p.of];
-    const double lower = p.lower * of, upper = p.upper * of;
-    const double se = u.standard_error[i];
-    double low = u.values[i] - u.quantile * se, high = u.values[i] + u.quantile * se;
-    if (p.scale == Scale::log && u.values[i] > 0.0) {  // symmetric in the logarithm
-      low = u.values[i] * std::exp(-u.quantile * se / u.values[i]);
-      high = u.values[i] * std::exp(u.quantile * se / u.values[i]);
+    Linear own = o.linear;
+    const bool stopped = u.at_bound[static_cast<std::size_t>(i)] != 0;
+    if (stopped) {  // what it would be known to without its bound
+      std::vector<Index> columns = inside;
+      columns.insert(std::upper_bound(columns.begin(), columns.end(), i), i);
+      own = linearised(e.J, columns, o.scatter);
+      const VectorXd step = -own.pseudo * e.r;
+      u.beyond_bound[i] = std::abs(slopes.row(i).dot(step));
+      u.standard_error[i] = u.white_error[i] = std::nan("");
     }
-    u.interval.push_back({std::max(low, lower), std::min(high, upper)});
+    const VectorXd a = own.pseudo.transpose() * slopes.row(i).transpose();
+    const VectorXd free = slopes.row(i).transpose().cwiseAbs2().cwiseProduct(own.bounded);
+    double more = free.sum();
+    if (erring) more += std::pow(a.dot(simulator_error), 2);
+    u.naive[i] = slopes.row(i) * own.inverse * slopes.row(i).transpose();
+    u.freedoms[i] = u.noise.freedom(a, more);
+    u.quantiles[i] = t_quantile(u.freedoms[i]);
+    u.released_error[i] = std::sqrt(u.noise.variance(a)(0, 0) + more);
+    const bool unknown = slopes.row(i).cwiseAbs().dot(own.undetermined) > 0.0 ||
+                         slopes.row(i).cwiseAbs().maxCoeff() == 0.0;
+    if (unknown) {
+      u.released_error[i] = infinity;
+      if (!stopped) u.standard_error[i] = u.white_error[i] = infinity;
+    }
+    const auto [lower, upper] = space.reach(static_cast<std::size_t>(i));
+    const double v = u.values[i], error = u.released_error[i], t = u.freedoms[i];
+    if (!std::isfinite(error) || !(error > 0.0)) {
+      u.interval.push_back(std::isfinite(error) ? std::array<double, 2>{v, v}
+                                                : std::array<double, 2>{lower, upper});
+      continue;
+    }
+    const bool log = p.scale == Scale::log && lower > 0.0;  // symmetric in the logarithm
+    const double se = log ? error / v : error, outside = u.beyond_bound[i] / (log ? v : 1.0);
+    const double below = std::max(0.0, log ? std::log(v / lower) : v - lower);
+    const double above = std::max(0.0, log ? std::log(upper / v) : upper - v);
+    const double down = reach_of(se, outside, t, below, above, p.of < 0);
+    const double up = reach_of(se, outside, t, above, below, p.of < 0);
+    const double low = down < below ? (log ? v * std::exp(-down) : v - down) : lower;
+    const double high = up < above ? (log ? v * std::exp(up) : v + up) : upper;
+    u.interval.push_back({low, high});
   }
 
   // directions in relative changes: ∂r/∂ln value over the residuals' own scatter
   if (m > 0) {
-    MatrixXd relative(J.rows(), m);
+    MatrixXd relative(e.J.rows(), m);
     // value_i moves with its own coordinate and with those it is a ratio to: invert the map
     const MatrixXd inverse = slopes.fullPivLu().inverse();
     const MatrixXd by_value = e.J * inverse;
@@ -234,8 +338,7 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
       const Index i = inside[static_cast<std::size_t>(j)];
       relative.col(j) = by_value.col(i) * std::abs(u.values[i]);
     }
-    const double scatter = rows > 0.0 ? std::sqrt(total / rows) : 1.0;
-    relative /= std::max(scatter, 1e-300);
+    relative /= std::max(std::sqrt(u.noise.mean_variance()), 1e-300);
     const Eigen::JacobiSVD<MatrixXd> svd(relative, Eigen::ComputeThinU | Eigen::ComputeThinV);
     for (Index k = svd.singularValues().size() - 1; k >= 0; --k) {
       Combination c;
@@ -250,124 +353,6 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
     }
   }
   return u;
-}
-
-Profile profile(const Problem& problem, const Uncertainty& at, const VectorXd& z, int parameter,
-                int points_per_side) {
-  Profile p;
-  p.parameter = parameter;
-  const Index i = parameter;
-  const ParameterSpace& space = problem.space();
-  Evaluation e;
-  problem.evaluate(z, true, e);
-  const double best = e.r.squaredNorm();
-  // the misfit's own scale, so that the profile's curvature at the optimum is the covariance's
-  const Eigen::JacobiSVD<MatrixXd> svd(e.J, Eigen::ComputeThinV);
-  double naive = 0.0;
-  for (Index k = 0; k < svd.singularValues().size(); ++k)
-    naive += std::pow(svd.matrixV()(i, k) / std::max(svd.singularValues()[k], 1e-12), 2.0);
-  const MatrixXd slopes = space.slopes(z);
-  const double se_z = at.standard_error[i] / slopes(i, i);
-  const bool own = space[static_cast<std::size_t>(i)].of < 0;
-  double factor = own && std::isfinite(se_z) && naive > 0.0 ? se_z * se_z / naive : 1.0;
-  if (!own || !(factor > 0.0)) {
-    double total = 0.0;
-    for (const ChannelScore& s : at.channels)
-      if (!problem.targets()[s.target].held_out) total += s.variance * static_cast<double>(s.rows);
-    factor = std::max(total / static_cast<double>(problem.data_rows()), 1e-300);
-  }
-  const double limit = at.quantile * at.quantile;
-  double sd = std::sqrt(naive * factor);
-  if (!(sd > 1e-8)) sd = 1e-8;
-  const auto side = [&](double sign, double& end, bool& open) {
-    std::vector<std::pair<double, double>> points;
-    VectorXd from = z;
-    double at_z = z[i], root_before = 0.0, z_before = z[i];
-    const double step = std::min(sd * at.quantile * 1.25 / points_per_side, 0.5 / points_per_side);
-    OptimiseOptions options;
-    options.fixed.assign(static_cast<std::size_t>(problem.parameters()), false);
-    options.fixed[static_cast<std::size_t>(i)] = true;
-    options.max_evaluations = 60;
-    double stride = step;
-    open = true;
-    for (int k = 0; k < 4 * points_per_side && !problem.interrupted(); ++k) {
-      at_z = std::min(1.0, std::max(0.0, z_before + sign * stride));
-      if (at_z == z_before) break;
-      from[i] = at_z;
-      const Optimum o = levenberg_marquardt(problem, from, options);
-      from = o.z;
-      const double excess = std::max(0.0, (2.0 * o.objective - best) / factor);
-      const double value = space.values(o.z)[i];
-      points.emplace_back(value, excess);
-      const double root = std::sqrt(excess);
-      if (excess >= limit) {
-        // √excess is nearly straight: interpolate for the crossing
-        const double share = (at.quantile - root_before) / (root - root_before);
-        VectorXd crossing = o.z;
-        crossing[i] = z_before + share * (at_z - z_before);
-        end = space.values(crossing)[i];
-        open = false;
-        break;
-      }
-      if (root - root_before < 0.3 * at.quantile / points_per_side) stride *= 2.0;
-      root_before = root;
-      z_before = at_z;
-      end = value;
-    }
-    return points;
-  };
-  p.lower = p.upper = at.values[i];
-  auto below = side(-1.0, p.lower, p.lower_open);
-  const auto above = side(1.0, p.upper, p.upper_open);
-  std::reverse(below.begin(), below.end());
-  for (const auto& [value, excess] : below) {
-    p.value.push_back(value);
-    p.excess.push_back(excess);
-  }
-  p.value.push_back(at.values[i]);
-  p.excess.push_back(0.0);
-  for (const auto& [value, excess] : above) {
-    p.value.push_back(value);
-    p.excess.push_back(excess);
-  }
-  return p;
-}
-
-MatrixXd bootstrap(const Problem& problem, const VectorXd& z, int repeats, std::uint64_t seed) {
-  std::vector<MatrixXd> fitted;
-  for (std::size_t k = 0; k < problem.targets().size(); ++k)
-    fitted.push_back(problem.predict(k, z).simulated);
-  MatrixXd values(repeats, problem.parameters());
-  const double widen = std::sqrt(
-      static_cast<double>(problem.data_rows()) /
-      static_cast<double>(std::max<Index>(1, problem.data_rows() - problem.parameters())));
-  tbb::parallel_for(0, repeats, [&](int b) {
-    std::mt19937_64 random(seed + 0x9e3779b97f4a7c15ULL * static_cast<std::uint64_t>(b + 1));
-    std::vector<MatrixXd> observed = fitted;
-    for (std::size_t k = 0; k < problem.targets().size(); ++k) {
-      const Target& t = problem.targets()[k];
-      if (t.held_out) continue;
-      for (std::size_t c = 0; c < t.channels.size(); ++c) {
-        const auto col = static_cast<Index>(c);
-        const VectorXd r = t.channels[c].observed - fitted[k].col(col);
-        VectorXd sd(r.size());  // rows of different noise exchange their residuals in units of it
-        for (Index i = 0; i < r.size(); ++i) sd[i] = scale_of(t.channels[c], i);
-        const VectorXd units = r.cwiseQuotient(sd);
-        const VectorXd centred = (units.array() - units.mean()).matrix() * widen;
-        const auto n = static_cast<std::uint64_t>(r.size());
-        const auto block =
-            static_cast<Index>(std::ceil(correlation_factor(lag_correlation(r), r.size())));
-        for (Index i = 0; i < r.size();) {
-          const auto from = static_cast<Index>(random() % n);
-          for (Index j = 0; j < block && i < r.size(); ++j, ++i)
-            observed[k](i, col) += sd[i] * centred[(from + j) % r.size()];
-        }
-      }
-    }
-    const Problem again = problem.with_observed(observed);
-    values.row(b) = problem.space().values(levenberg_marquardt(again, z).z).transpose();
-  });
-  return values;
 }
 
 }  // namespace repose::calibration

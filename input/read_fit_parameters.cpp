@@ -30,15 +30,31 @@ FitParameters::Entry FitParameters::read_entry(TomlReader entry, const std::stri
   p.start = entry.optional_number({"start", ratio ? "-" : unit, "start of " + what, {}, {}});
   if (entry.has("prior")) {
     TomlReader prior = entry.table("prior");
-    p.prior = calibration::Prior{
-        prior.number({"mean", unit, "expected value", {}, {}}),
-        prior.number({"sd", "-", "standard deviation (relative on a log scale)", positive, {}})};
+    const double mean = prior.number({"mean", unit, "expected value", {}, {}});
+    const auto sd = prior.optional_number(
+        {"sd", unit, "standard deviation in the parameter's own unit", positive, {}});
+    const auto share = prior.optional_number(
+        {"relative_sd", "-", "standard deviation as a share of the mean", positive, {}});
+    if (sd.has_value() == share.has_value())
+      prior.report(
+          sd ? "relative_sd" : "sd",
+          fmt::format("{} needs either sd, in the unit of {} [{}], or relative_sd, a share "
+                      "of the mean",
+                      entry.path_of("prior"), name, unit));
+    if (share && !(mean > 0.0))
+      prior.report("mean", fmt::format("{} must be > 0 with a relative_sd; got {}",
+                                       prior.path_of("mean"), mean));
+    p.prior = calibration::Prior{mean, sd.value_or(share.value_or(1.0)), share.has_value()};
   } else {
     entry.expect("prior");
   }
   if (!(p.lower < p.upper) && std::isfinite(p.lower) && std::isfinite(p.upper))
     entry.report("upper", fmt::format("{} = {} must be > lower = {}", entry.path_of("upper"),
                                       p.upper, p.lower));
+  if (p.start && p.lower < p.upper && !(*p.start >= p.lower && *p.start <= p.upper))
+    entry.report("start",
+                 fmt::format("{} = {} lies outside its bounds, {} to {}{}", entry.path_of("start"),
+                             *p.start, p.lower, p.upper, ratio ? " of the ratio" : ""));
   if (p.scale == Scale::log && p.lower <= 0.0)
     entry.report("lower", fmt::format("{} must be > 0 on a logarithmic scale; got {}",
                                       entry.path_of("lower"), p.lower));
@@ -102,6 +118,7 @@ int FitParameters::add_initial(TomlReader& free, const std::string& key,
 }
 
 void FitParameters::link_ratios() {
+  below_.assign(out_.free.size(), "");
   std::vector<std::size_t> order(out_.free.size());
   const auto find = [&](std::string_view name) {
     for (std::size_t i = 0; i < out_.free.size(); ++i)
@@ -112,26 +129,34 @@ void FitParameters::link_ratios() {
        {std::pair<std::string_view, std::string_view>{"kappa", "lambda"}, {"mu_0", "mu_d"}}) {
     const int i = find(small), j = find(large);
     if (i < 0 || j < 0 || out_.law_key[static_cast<std::size_t>(i)] != small) continue;
-    FreeParameter& p = out_.free[static_cast<std::size_t>(i)];
-    const FreeParameter& of = out_.free[static_cast<std::size_t>(j)];
-    if (!of_[static_cast<std::size_t>(i)].empty() || p.upper < of.lower || p.prior) continue;
-    const double start = start_value(p) / start_value(of);
-    p.lower = std::max(1e-6, p.lower / of.upper);
-    p.upper = std::min(0.999, p.upper / of.lower);
-    p.start = start;
-    p.scale = Scale::linear;
-    of_[static_cast<std::size_t>(i)] = large;
-    out_.notes.push_back(fmt::format("{} < {} is kept by fitting {}/{} in [{:.3g}, {:.3g}]", small,
-                                     large, small, large, p.lower, p.upper));
+    const FreeParameter& p = out_.free[static_cast<std::size_t>(i)];
+    const FreeParameter& above = out_.free[static_cast<std::size_t>(j)];
+    if (!of_[static_cast<std::size_t>(i)].empty() || !of_[static_cast<std::size_t>(j)].empty() ||
+        p.upper < above.lower)
+      continue;
+    if (!(p.lower < calibration::below_share * above.upper)) {
+      file_.report(join_path(path_[static_cast<std::size_t>(i)], "lower"),
+                   fmt::format("{0} must be less than {1}, but {0} >= {2} and {1} <= {3} leave no "
+                               "such values: lower the bounds of {0} or raise those of {1}",
+                               small, large, p.lower, above.upper));
+      continue;
+    }
+    below_[static_cast<std::size_t>(i)] = large;
+    out_.notes.push_back(
+        fmt::format("{0} < {1} is kept: {0} stays between {2:.4g} and the smaller "
+                    "of {3:.4g} and {4} {1}",
+                    small, large, p.lower, p.upper, calibration::below_share));
   }
   std::vector<int> placed(out_.free.size(), -1);
   std::vector<FreeParameter> sorted;
   std::vector<std::string> keys;
   for (const bool ratios : {false, true})
     for (std::size_t i = 0; i < out_.free.size(); ++i) {
-      if (of_[i].empty() == ratios) continue;
+      if ((of_[i].empty() && below_[i].empty()) == ratios) continue;
       FreeParameter p = out_.free[i];
-      if (ratios) {
+      if (!below_[i].empty())
+        p.below = placed[static_cast<std::size_t>(find(below_[i]))];
+      else if (ratios) {
         const int other = find(of_[i]);
         if (other < 0 || !of_[static_cast<std::size_t>(other)].empty()) {
           file_.report(join_path(path_[i], "of"),

@@ -24,8 +24,9 @@ class FitParameters {
   /// An entry `key` of a target's `free`: p, ocr, v, K0 or p_c0. Returns its position.
   int add_initial(TomlReader& free, const std::string& key, const std::string& target);
 
-  /// Resolves `of`, and keeps the orders that the laws demand (κ < λ, μ_0 < μ_d) by ratios where
-  /// the bounds alone do not. Ratios go last, so positions change: the targets' bindings follow.
+  /// Resolves `of`, and keeps the orders that the laws demand (κ < λ, μ_0 < μ_d) where the bounds
+  /// alone do not; every bound that was written holds. What depends on another parameter goes last,
+  /// so positions change: the targets' bindings follow.
   void link_ratios();
 
  private:
@@ -41,6 +42,7 @@ class FitParameters {
   InputFile& file_;
   FitFile& out_;
   std::vector<std::string> of_, path_;  ///< per free parameter
+  std::vector<std::string> below_;      ///< per free parameter: the one it must stay below
   std::map<std::string, int> shared_;
 };
 

@@ -26,6 +26,7 @@ struct FitArguments {
   int starts_from = 0;
   int starts_to = -1;
   std::vector<std::string> merge;
+  bool strict = false;
 };
 
 constexpr std::string_view journal_name = "starts.jsonl";
@@ -96,11 +97,13 @@ class FitRun {
       fmt::print(stderr, "{}: no start came to an end\n", arguments_.file);
       return interrupted ? io::ExitCode::interrupted : io::ExitCode::numerical_failure;
     }
+    if (!interrupted) calibration::settle_priors(problem_, file_.options, result_.starts);
     if (interrupted) problem_.interrupt_by({});
     analyse(interrupted);
     const std::string status = interrupted             ? "interrupted"
                                : result_.best().failed ? "failed"
-                                                       : "done";
+                               : result_.converged     ? "done"
+                                                       : "not converged";
     Json report = study::fit_report(file_, problem_, result_, status);
     folder_.write_file("fit.json", report.dump(2) + "\n");
     folder_.write_file("fitted.toml", study::fitted_toml(file_, result_));
@@ -109,7 +112,8 @@ class FitRun {
     write_summary(status, before, report);
     tell(status, study::usage().wall_s - before.wall_s);
     if (interrupted) return io::ExitCode::interrupted;
-    return result_.best().failed ? io::ExitCode::numerical_failure : io::ExitCode::done;
+    const bool short_of = arguments_.strict && !result_.converged;
+    return result_.best().failed || short_of ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
  private:
@@ -195,18 +199,21 @@ class FitRun {
 
   void analyse(bool interrupted) {
     const auto& best = result_.best();
-    result_.uncertainty = calibration::uncertainty(problem_, best.z, resolution_error(best.z));
+    const Eigen::VectorXd error = resolution_error(best.z);
+    result_.uncertainty = calibration::uncertainty(problem_, best.z, error);
     result_.clusters = calibration::clusters(problem_, result_.starts);
     tell_rows_beyond(best.z);
-    if (interrupted || best.failed) return;
-    if (file_.profiles)
+    result_.converged = calibration::converged(problem_, result_.starts);
+    const bool whole = !interrupted && !best.failed;
+    if (whole && file_.profiles)
       for (std::size_t i = 0; i < file_.free.size(); ++i)
-        if (result_.uncertainty.at_bound[i] == 0)
-          result_.profiles.push_back(
-              calibration::profile(problem_, result_.uncertainty, best.z, static_cast<int>(i)));
-    if (file_.bootstrap > 0)
-      result_.bootstrap =
-          calibration::bootstrap(problem_, best.z, file_.bootstrap, file_.options.seed);
+        result_.profiles.push_back(
+            calibration::profile(problem_, result_.uncertainty, best.z, static_cast<int>(i)));
+    result_.quoted = calibration::recommend(problem_, result_.uncertainty, result_.profiles);
+    if (whole && file_.bootstrap > 0)
+      result_.bootstrap = calibration::bootstrap(problem_, result_.uncertainty, best.z,
+                                                 file_.bootstrap, file_.options.seed, error);
+    if (!interrupted) result_.causes = calibration::misfit_causes(problem_, best.z);
   }
 
   void write_summary(const std::string& status, const study::Usage& before, const Json& report) {
@@ -261,17 +268,18 @@ class FitRun {
     for (std::size_t i = 0; i < file_.free.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const std::string unit = file_.free[i].unit == "-" ? "" : " " + file_.free[i].unit;
-      std::string words =
-          fmt::format("95 %: {:.5g} to {:.5g}{}", u.interval[i][0], u.interval[i][1], unit);
-      if (u.at_bound[i] != 0)
-        words = fmt::format("at its {} bound", u.at_bound[i] < 0 ? "lower" : "upper");
-      else if (!std::isfinite(u.standard_error[k]))
-        words = "the data do not determine it";
-      fmt::print("  {:<16} {:.6g}{}   {}\n", file_.free[i].name, u.values[k], unit, words);
+      fmt::print("  {:<16} {:.6g}{}   95 % ({}): {}\n", file_.free[i].name, u.values[k], unit,
+                 result_.quoted[i].kind, study::quoted_words(file_, result_, i));
     }
+    if (!result_.converged)
+      fmt::print(
+          "  not converged: the limit of evaluations (solver.{} = {}) ended every start of "
+          "the best optimum; values and intervals are provisional\n",
+          file_.coarse.empty() ? "local_evaluations" : "fine_evaluations",
+          file_.coarse.empty() ? file_.options.local_evaluations : file_.fine_evaluations);
     if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
       fmt::print("  worst determined: {}\n", u.combinations.front().words);
-    for (const std::string& text : study::discrepancies(file_, result_))
+    for (const std::string& text : study::discrepancies(file_, problem_, result_))
       fmt::print("  does not follow: {}\n", text);
     if (result_.clusters.size() > 1) {
       const auto& c = result_.clusters;
@@ -314,6 +322,7 @@ Command add_fit(CLI::App& root) {
                "I");
   verb.integer("--starts-to", arguments->starts_to, 1, most_starts,
                "One past the last start of this share", "J");
+  verb.flag("--strict", arguments->strict, "Exit with 3 if the fit is not converged");
   verb.option("--merge", arguments->merge, "Take the starts from these result folders", "DIR...");
   return {verb.app(), options, [options, arguments] { return FitRun(*arguments, *options).run(); }};
 }

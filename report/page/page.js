@@ -108,7 +108,8 @@ function player_of(results) {
 function fit_tables(results) {
   return results.filter((r) => r.fit?.parameters).map((r) => {
     const names = Object.keys(r.fit.parameters), c = r.fit.correlation ?? [];
-    const interval = (p) => (p.at_bound ? `at its ${p.at_bound} bound` : p.interval_95?.every((x) => x !== null) ? `${number(p.interval_95[0])} to ${number(p.interval_95[1])}` : "the data do not determine it");
+    const quoted = (p) => p.recommended_95;
+    const interval = (p) => (quoted(p) && quoted(p).kind !== "bounds" ? `${quoted(p).lower_is_bound ? "at most" : quoted(p).upper_is_bound ? "at least" : number(quoted(p).interval[0]) + " to"} ${number(quoted(p).interval[quoted(p).upper_is_bound && !quoted(p).lower_is_bound ? 0 : 1])}${p.at_bound ? ` (at its ${p.at_bound} bound)` : ""}` : quoted(p) ? "the data do not determine it" : p.at_bound ? `at its ${p.at_bound} bound` : p.interval_95?.every((x) => x !== null) ? `${number(p.interval_95[0])} to ${number(p.interval_95[1])}` : "the data do not determine it");
     const ink = (x) => (Math.abs(x) > 0.55 ? "#ffffff" : "var(--ink)");
     const tint = (x) => (x === null ? "none" : `color-mix(in srgb, ${x < 0 ? "#a63c00" : "#005f9e"} ${Math.round(100 * Math.min(Math.abs(x), 1))}%, var(--page))`);
     return el("div", {},

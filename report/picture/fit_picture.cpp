@@ -158,7 +158,7 @@ Figure fit_diagnostics(const input::FitFile& file, const study::FitResult& resul
     axes.x.label = fmt::format("{} ({})", file.free[i].name, file.free[i].unit);
     axes.y = {"excess (95 % at 3.84)", AxisScale::linear, 0.0, 8.0};
     axes.line("", profile.value, profile.excess, {Colour::blue, 1.8, Marker::circle, 4.0});
-    const double limit = result.uncertainty.quantile * result.uncertainty.quantile;
+    constexpr double limit = 3.841458821;  // the scale of Profile::excess
     const std::array<double, 2> ends{profile.value.front(), profile.value.back()};
     const std::array<double, 2> level{limit, limit};
     if (ends[0] < ends[1]) axes.dashed("", ends, level, {Colour::grey, 1.0});

@@ -84,7 +84,32 @@ Json channel_json(const calibration::Target& target, const calibration::ChannelS
 
 }  // namespace
 
-std::vector<std::string> discrepancies(const input::FitFile& file, const FitResult& result) {
+std::string quoted_words(const input::FitFile& file, const FitResult& result,
+                         std::size_t parameter) {
+  const calibration::Recommendation& q = result.quoted[parameter];
+  const auto& p = file.free[parameter];
+  const std::string unit = p.unit == "-" ? "" : " " + p.unit;
+  const auto [low, high] = q.interval;
+  const int at = result.uncertainty.at_bound[parameter];
+  std::string text;
+  if (q.lower_is_bound && q.upper_is_bound)
+    return fmt::format("the data do not determine it within its bounds, {:.5g} to {:.5g}{}", low,
+                       high, unit);
+  if (q.kind == "bounds") return "the data do not determine it";
+  if (q.lower_is_bound)
+    text = fmt::format("at most {:.5g}{}", high, unit);
+  else if (q.upper_is_bound)
+    text = fmt::format("at least {:.5g}{}", low, unit);
+  else
+    text = fmt::format("{:.5g} to {:.5g}{}", low, high, unit);
+  if (at != 0)
+    text += fmt::format("; the best value is at its {} bound", at < 0 ? "lower" : "upper");
+  return text;
+}
+
+std::vector<std::string> discrepancies(const input::FitFile& file,
+                                       const calibration::Problem& problem,
+                                       const FitResult& result) {
   std::vector<std::string> texts;
   for (const auto& s : result.uncertainty.channels) {
     if (!s.systematic) continue;
@@ -99,6 +124,21 @@ std::vector<std::string> discrepancies(const input::FitFile& file, const FitResu
       text += fmt::format(", in one direction over stretches (neighbours correlate by {:.2f})",
                           s.lag_correlation);
     texts.push_back(text + fmt::format("; worst at {} = {:.4g}", t.x_name, t.x[s.worst_row]));
+  }
+  for (std::size_t k = 0; k < file.targets.size(); ++k) {
+    const bool far = std::any_of(
+        result.uncertainty.channels.begin(), result.uncertainty.channels.end(),
+        [&](const auto& s) { return s.target == k && s.large && !file.targets[k].held_out; });
+    if (!far) continue;
+    const auto cause = std::find_if(result.causes.begin(), result.causes.end(),
+                                    [&](const auto& c) { return c.target == k; });
+    texts.push_back(
+        file.targets[k].name + ": " +
+        (cause != result.causes.end()
+             ? in_words(problem, *cause)
+             : "the misfit is large beside the range of the data, and no factor of 100 or 1000 and "
+               "no other sign of a column mends it: look at the initial state, the bounds, the "
+               "starts (solver.starts) and the law"));
   }
   return texts;
 }
@@ -126,18 +166,30 @@ Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
     e["standard_error_if_residuals_were_white"] = number(u.white_error[k]);
     if (!result.coarse.empty()) e["shift_by_resolution"] = number(u.shift[k]);
     e["interval_95"] = {number(u.interval[i][0]), number(u.interval[i][1])};
+    const calibration::Recommendation& quoted = result.quoted[i];
+    e["recommended_95"] = {{"interval", {number(quoted.interval[0]), number(quoted.interval[1])}},
+                           {"lower_is_bound", quoted.lower_is_bound},
+                           {"upper_is_bound", quoted.upper_is_bound},
+                           {"kind", quoted.kind},
+                           {"reason", quoted.reason}};
+    e["degrees_of_freedom"] = number(u.freedoms[k]);
     for (const auto& profile : result.profiles) {
       if (profile.parameter != static_cast<int>(i)) continue;
       e["profile_interval_95"] = {profile.lower_open ? Json(nullptr) : number(profile.lower),
                                   profile.upper_open ? Json(nullptr) : number(profile.upper)};
     }
     if (result.bootstrap.rows() > 0) {
-      std::vector<double> draws(result.bootstrap.col(k).begin(), result.bootstrap.col(k).end());
-      std::sort(draws.begin(), draws.end());
-      const auto at = [&](double share) {
-        return draws[static_cast<std::size_t>(share * static_cast<double>(draws.size() - 1))];
-      };
-      e["bootstrap_interval_95"] = {at(0.025), at(0.975)};
+      const auto reach = problem.space().reach(i);
+      const auto drawn =
+          calibration::bootstrap_interval(result.bootstrap.col(k), u.values[k], u.quantiles[k]);
+      e["bootstrap_interval_95"] = {std::max(drawn[0], reach[0]), std::min(drawn[1], reach[1])};
+    }
+    if (p.prior) {
+      const double pull =
+          p.prior->relative ? std::log(u.values[k] / p.prior->mean) : u.values[k] - p.prior->mean;
+      e["prior"] = {{"mean", p.prior->mean},
+                    {p.prior->relative ? "relative_sd" : "sd", p.prior->sd},
+                    {"pulled_by_sd", number(pull / p.prior->sd)}};
     }
     e["lower"] = p.lower;
     e["upper"] = p.upper;
@@ -167,7 +219,7 @@ Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
     targets[file.targets[k].name] = std::move(t);
   }
   j["targets"] = std::move(targets);
-  j["discrepancy"] = discrepancies(file, result);
+  j["discrepancy"] = discrepancies(file, problem, result);
   Json correlation = Json::array();
   for (Index i = 0; i < u.correlation.rows(); ++i)
     correlation.push_back(list(u.correlation.row(i)));
@@ -278,14 +330,7 @@ std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
     const std::string assignment = fmt::format("{} = {}", key, digits);
     return comment.empty() ? assignment + "\n" : fmt::format("{:<32}# {}\n", assignment, comment);
   };
-  const auto comment = [&](std::size_t i) {
-    if (u.at_bound[i] != 0) return std::string("at its bound: not determined by the data");
-    if (!std::isfinite(u.standard_error[static_cast<Index>(i)]))
-      return std::string("the data do not determine it");
-    return fmt::format("{:.6g} to {:.6g}{}{}", u.interval[i][0], u.interval[i][1],
-                       file.free[i].unit == "-" ? "" : " ",
-                       file.free[i].unit == "-" ? "" : file.free[i].unit);
-  };
+  const auto comment = [&](std::size_t i) { return quoted_words(file, result, i); };
   for (const ParamInfo& p : file.info->parameters) {
     const auto value = law.values.find(std::string(p.name));
     if (value == law.values.end()) continue;

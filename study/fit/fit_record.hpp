@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "calibration/misfit_cause.hpp"
 #include "calibration/uncertainty.hpp"
 #include "input/read_fit.hpp"
 
@@ -17,11 +18,15 @@ struct FitResult {
   std::vector<calibration::Profile> profiles;
   std::vector<calibration::StartResult> coarse;  ///< ends of the coarse search; empty without one
   Eigen::MatrixXd bootstrap;                     ///< repeats × parameters; empty if not asked for
+  std::vector<calibration::Recommendation> quoted;  ///< the interval to quote, per parameter
+  std::vector<calibration::MisfitCause> causes;     ///< of large misfits
+  bool converged = true;                            ///< false: the limit of evaluations ended it
   std::vector<calibration::Cluster> clusters;
   const calibration::Optimum& best() const { return calibration::best_of(starts).optimum; }
 };
 
-/// The text of fit.json. status: "done" or "interrupted". Values that are not finite become null.
+/// The text of fit.json. status: "done", "not converged", "failed" or "interrupted". Values that
+/// are not finite become null.
 nlohmann::ordered_json fit_report(const input::FitFile& file, const calibration::Problem& problem,
                                   const FitResult& result, const std::string& status);
 
@@ -32,8 +37,16 @@ std::string predictions_csv(const input::FitFile& file, const calibration::Probl
 /// fitted.toml: a [law] table that `repose point` and `repose run` take, intervals in comments.
 std::string fitted_toml(const input::FitFile& file, const FitResult& result);
 
-/// Where the model does not follow the data, one sentence each; empty if nowhere.
-std::vector<std::string> discrepancies(const input::FitFile& file, const FitResult& result);
+/// Where the model does not follow the data, one sentence each, with the cause where trying found
+/// one; empty if nowhere.
+std::vector<std::string> discrepancies(const input::FitFile& file,
+                                       const calibration::Problem& problem,
+                                       const FitResult& result);
+
+/// "0.93 to 1.04 Pa", "at most 0.031 (its bound is 0.005)", "the data do not determine it": the
+/// recommended 95 % interval.
+std::string quoted_words(const input::FitFile& file, const FitResult& result,
+                         std::size_t parameter);
 
 /// One line per finished start, and back. A journal begins with the fit's fingerprint; a line that
 /// was cut short is ignored.

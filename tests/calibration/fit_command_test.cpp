@@ -183,10 +183,18 @@ TEST_F(FitCommand, KappaStaysBelowLambdaWhereBoundsOverlap) {
   write("fit.toml", text);
   const input::FitFile file = input::read_fit(path("fit.toml"), {}, 1);
   ASSERT_EQ(file.notes.size(), 1u);
-  EXPECT_EQ(file.notes[0], "kappa < lambda is kept by fitting kappa/lambda in [0.05, 0.999]");
-  const calibration::ParameterSpace space(file.free);
+  EXPECT_EQ(file.notes[0],
+            "kappa < lambda is kept: kappa stays between 0.02 and the smaller of 0.15 and 0.999 "
+            "lambda");
   ASSERT_EQ(file.free[2].name, "kappa");
-  EXPECT_EQ(file.free[2].of, 1);
+  EXPECT_EQ(file.free[2].below, 1);
+  EXPECT_EQ(file.free[2].lower, 0.02);
+  EXPECT_EQ(file.free[2].upper, 0.15);
+  EXPECT_EQ(complaint(replaced(text, "kappa = { lower = 0.02, upper = 0.15",
+                               "kappa = { lower = 0.5, upper = 0.6"))
+                .find("bad.toml:8:19: kappa must be less than lambda, but kappa >= 0.5 and lambda "
+                      "<= 0.4 leave no such values"),
+            0u);
 }
 
 /// Drained compression of a clay, over ε_q: rows far beyond 10 % of axial strain.
@@ -289,6 +297,136 @@ TEST_F(FitCommand, AnExcessPorePressureOfADrainedTestIsDoubted) {
             std::string::npos)
       << file.notes[0];
 }
+
+
+TEST_F(FitCommand, EveryBoundOfKappaHoldsWhetherItOverlapsThoseOfLambdaOrNot) {
+  // truth κ = 0.062; the user insists on less
+  for (const char* lower : {"0.02", "0.05"}) {
+    std::string text = replaced(fit_text(), "lambda = 0.161\n", "");
+    text =
+        replaced(text, "kappa = { lower = 0.02, upper = 0.15, scale = \"log\" }",
+                 fmt::format("kappa = {{ lower = 0.005, upper = 0.03 }}\nlambda = {{ lower = {}, "
+                             "upper = 0.4 }}",
+                             lower));
+    write("fit.toml", text);
+    ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("out")}), 0);
+    const auto report = nlohmann::json::parse(content_of(folder_ / "out/fit.json"));
+    const auto& kappa = report["parameters"]["kappa"];
+    EXPECT_LE(kappa["value"].get<double>(), 0.03);
+    EXPECT_EQ(kappa["at_bound"], "upper") << lower;
+    EXPECT_TRUE(kappa["standard_error"].is_null());
+    EXPECT_TRUE(kappa["recommended_95"]["upper_is_bound"]);
+    EXPECT_LT(kappa["recommended_95"]["interval"][0].get<double>(), 0.03);
+    EXPECT_EQ(kappa["recommended_95"]["interval"][1].get<double>(), 0.03);
+  }
+}
+
+TEST_F(FitCommand, RefusesAStartOutsideItsBoundsAndAPriorWithoutAUnit) {
+  const std::string good = fit_text(), bounds = "M = { lower = 0.4, upper = 1.8 }";
+  EXPECT_EQ(complaint(replaced(good, bounds, "M = { lower = 0.4, upper = 1.8, start = 2.0 }")),
+            "bad.toml:8:33: fit.M.start = 2 lies outside its bounds, 0.4 to 1.8");
+  const auto prior = [&](const std::string& text) {
+    return complaint(
+        replaced(good, bounds, "M = { lower = 0.4, upper = 1.8, prior = { " + text + " } }"));
+  };
+  EXPECT_EQ(prior("mean = 0.9, sd = 0.05"), "accepted");
+  EXPECT_EQ(prior("mean = 0.9, relative_sd = 0.05"), "accepted");
+  EXPECT_NE(prior("mean = 0.9")
+                .find("fit.M.prior needs either sd, in the unit of M [-], or "
+                      "relative_sd, a share of the mean"),
+            std::string::npos);
+  EXPECT_NE(prior("mean = 0.9, sd = 0.1, relative_sd = 0.1").find("needs either sd"),
+            std::string::npos);
+}
+
+TEST_F(FitCommand, SaysNotConvergedWhereTheLimitEndedEveryStart) {
+  write("fit.toml", replaced(fit_text(), "starts = 6", "starts = 3\nlocal_evaluations = 2"));
+  ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("out")}), 0);
+  for (const char* name : {"out/fit.json", "out/summary.json"})
+    EXPECT_EQ(nlohmann::json::parse(content_of(folder_ / name))["status"], "not converged");
+  EXPECT_EQ(command({"fit", path("fit.toml"), "-o", path("out"), "--strict"}), 3);
+  write("fit.toml", fit_text());
+  EXPECT_EQ(command({"fit", path("fit.toml"), "-o", path("out"), "--strict"}), 0);
+}
+
+TEST_F(FitCommand, ALargeMisfitIsToldWithItsCause) {
+  // kPa under a header of Pa
+  write("cu.csv", replaced(replaced(undrained_table(), "q_kPa", "q_Pa"), "u_kPa", "u_Pa"));
+  ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("out")}), 0);
+  const auto report = nlohmann::json::parse(content_of(folder_ / "out/fit.json"));
+  std::string all;
+  for (const auto& text : report["discrepancy"]) all += text.get<std::string>() + "\n";
+  EXPECT_NE(all.find("q_Pa is off by"), std::string::npos) << all;
+  EXPECT_NE(all.find("q_Pa and u_Pa look 1000 times too small (kPa in a column of Pa?)"),
+            std::string::npos)
+      << all;
+}
+
+/// The kaolin fit, with the noise of its file or estimated, and its refits at fixed values.
+class Kaolin : public testing::TestWithParam<bool> {};
+
+TEST_P(Kaolin, ProfileIntervalsAgreeWithRefitsAtFixedValues) {
+  input::FitFile file =
+      input::read_fit(std::string(REPOSE_SOURCE_DIR) + "/data/experiments/fit_kaolin.toml", {}, 1);
+  if (!GetParam())
+    for (auto& t : file.targets)
+      for (auto& c : t.channels) {
+        c.noise.reset();
+        c.row_noise.resize(0);
+      }
+  calibration::Problem problem(calibration::ParameterSpace(file.free), file.targets, file.balance);
+  const auto starts = calibration::run_starts(problem, file.options);
+  const Eigen::VectorXd z = calibration::best_of(starts).optimum.z;
+  const auto u = calibration::uncertainty(problem, z);
+  calibration::Evaluation e;
+  problem.evaluate(z, false, e);
+  for (std::size_t i = 0; i < file.free.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const auto p = calibration::profile(problem, u, z, static_cast<int>(i));
+    std::printf("[ measured ] %-6s %8.5f  linear %8.5f to %8.5f  profile %8.5f%s to %8.5f%s",
+                file.free[i].name.c_str(), u.values[k], u.interval[i][0], u.interval[i][1], p.lower,
+                p.lower_open ? "*" : "", p.upper, p.upper_open ? "*" : "");
+    EXPECT_LE(p.lower, u.values[k]);
+    EXPECT_GE(p.upper, u.values[k]);
+    const double factor = u.released_error[k] * u.released_error[k] / u.naive[k];
+    for (const bool up : {false, true}) {
+      if (up ? p.upper_open : p.lower_open) continue;
+      // the value pinned by bounds of 1e-9 instead of being held, from all starts afresh
+      const double end = up ? p.upper : p.lower;
+      std::vector<calibration::FreeParameter> pinned = file.free;
+      auto& q = pinned[i];
+      const double near = 1e-9 * std::abs(end);
+      if (q.of >= 0) {
+        // a ratio x λ = end is pinned as a value of its own, with the ratio's bounds left to λ
+        auto& of = pinned[static_cast<std::size_t>(q.of)];
+        of.lower = std::max(of.lower, end / q.upper);
+        of.upper = std::min(of.upper, end / q.lower);
+        of.start.reset();
+        q.of = -1;
+      }
+      q.lower = end - near;
+      q.upper = end + near;
+      q.start.reset();
+      const calibration::Problem refit(calibration::ParameterSpace(pinned), file.targets,
+                                       file.balance);
+      calibration::FitOptions options = file.options;
+      options.starts = 6;
+      const auto ends = calibration::run_starts(refit, options);
+      const double excess =
+          (2.0 * calibration::best_of(ends).optimum.objective - e.r.squaredNorm()) / factor;
+      const double t = u.quantiles[k];
+      std::printf("  %s %.3f", up ? "upper" : "lower", excess / (t * t));
+      // the end is found to 1e-3 of √excess; the bounds themselves change what excess is critical
+      // only within t standard errors of them
+      const double room =
+          std::min(end - problem.space().reach(i)[0], problem.space().reach(i)[1] - end);
+      if (room > t * u.released_error[k]) EXPECT_NEAR(excess / (t * t), 1.0, 0.01) << up;
+    }
+    std::printf("\n");
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Noise, Kaolin, testing::Values(true, false),
+                         [](const auto& p) { return p.param ? "Declared" : "Estimated"; });
 
 }  // namespace
 }  // namespace repose::app
