@@ -43,15 +43,10 @@ std::optional<Source> find_column(const point::Table& table, const std::string& 
 
 }  // namespace
 
-FitTable read_fit_table(TomlReader& target, const std::string& x,
-                        const std::vector<std::string>& y) {
+FitTable read_fit_table(TomlReader& target, const TargetTable& given) {
   FitTable result;
-  const std::string name = target.text("data", "a CSV table");
-  const auto from = target.optional_number({"from", "-", "smallest x that is compared", {}, {}});
-  const auto to = target.optional_number({"to", "-", "largest x that is compared", {}, {}});
-  const double shift = target.number({"x_shift", "-", "added to the table's x", {}, 0.0});
-  if (name.empty()) return result;
-  std::filesystem::path file = name;
+  if (given.data.empty() || given.y.empty()) return result;
+  std::filesystem::path file = given.data;
   if (file.is_relative()) file = std::filesystem::path(target.file().name()).parent_path() / file;
   point::Table table;
   try {
@@ -63,8 +58,8 @@ FitTable read_fit_table(TomlReader& target, const std::string& x,
     throw io::IoError(file, error.code().message());
   }
   std::vector<Source> sources;
-  std::vector<std::string> wanted{x};
-  wanted.insert(wanted.end(), y.begin(), y.end());
+  std::vector<std::string> wanted{given.x};
+  wanted.insert(wanted.end(), given.y.begin(), given.y.end());
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i].empty()) return result;
     const auto source = find_column(table, wanted[i]);
@@ -80,21 +75,21 @@ FitTable read_fit_table(TomlReader& target, const std::string& x,
     }
     sources.push_back(*source);
   }
-  result.y.resize(y.size());
+  result.y.resize(given.y.size());
   const auto value = [&](std::size_t i, std::size_t row) {
     return sources[i].offset + sources[i].factor * table.values[sources[i].column][row];
   };
   for (std::size_t row = 0; row < table.lines.size(); ++row) {
-    const double at = value(0, row) + shift;
-    if ((from && at < *from) || (to && at > *to)) continue;
+    const double at = value(0, row) + given.x_shift;
+    if ((given.from && at < *given.from) || (given.to && at > *given.to)) continue;
     result.x.push_back(at);
-    for (std::size_t c = 0; c < y.size(); ++c) result.y[c].push_back(value(c + 1, row));
+    for (std::size_t c = 0; c < given.y.size(); ++c) result.y[c].push_back(value(c + 1, row));
     result.lines.push_back(table.lines[row]);
   }
   if (result.x.size() < 2) {
     target.report("data", fmt::format("{} has {} rows with {} in the range that is compared; at "
                                       "least two are needed",
-                                      file.string(), result.x.size(), x));
+                                      file.string(), result.x.size(), given.x));
     result = {};
   }
   return result;

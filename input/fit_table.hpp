@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "input/fit_keys.hpp"
 #include "input/toml_reader.hpp"
 #include "pointdriver/path/curve.hpp"
 #include "pointdriver/path/history.hpp"
@@ -21,7 +22,6 @@ struct FitTable {
 /// adding x_shift. A quantity "q_Pa" is found as q_Pa, q_kPa or q_MPa, a strain as eps_a or
 /// eps_a_percent, the specific volume v also as the void ratio e. Reports what is wrong and returns
 /// no rows then.
-FitTable read_fit_table(TomlReader& target, const std::string& x,
-                        const std::vector<std::string>& y);
+FitTable read_fit_table(TomlReader& target, const TargetTable& given);
 
 }  // namespace repose::input

@@ -304,7 +304,11 @@ std::string InputFile::advice(std::string_view table_path, std::string_view key)
 }
 
 void InputFile::find_unknown(const toml::table& table, const std::string& path) {
-  if (any_key_.contains(path)) return;
+  if (any_key_.contains(path)) {
+    // its keys are checked elsewhere; what lies below them is not
+    for (const auto& [key, node] : table) find_unknown(node, join_path(path, key.str()));
+    return;
+  }
   const auto known = expected_.find(path);
   // a table that no reader opened belongs to a key that has been reported, or was read as a whole
   if (known == expected_.end()) return;

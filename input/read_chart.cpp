@@ -84,9 +84,9 @@ void chart_keys(Keys& keys, ChartTable& chart) {
   keys.choices({"transfers", "-", "of velocities"}, mpm::transfer_names, sweep.transfers);
   keys.choices({"kernels", "-", "splines of the grid"}, mpm::kernel_names, sweep.kernels);
   std::vector<double> counts(sweep.points_per_cell.begin(), sweep.points_per_cell.end());
-  keys.number_list({"points_per_cell", "-", "square numbers: 1, 4, 9, 16",
-                    Range{1.0, 100.0, false, false}},
-                   counts);
+  keys.number_list(
+      {"points_per_cell", "-", "square numbers: 1, 4, 9, 16", Range{1.0, 100.0, false, false}},
+      counts);
   sweep.points_per_cell.clear();
   for (const double count : counts) {
     if (count != std::floor(count) && keys.reader() != nullptr)
@@ -103,16 +103,16 @@ void chart_keys(Keys& keys, ChartTable& chart) {
   KeyInfo any;
   any.kind = ValueKind::table;
   any.open = true;
-  keys.value({"vary", "-", "further keys of the scene and their values"},
-             [&](TomlReader& table) { sweep.vary = read_varied(table); },
-             [&] {
-               std::vector<std::string> items;
-               for (const VariedKey& varied : sweep.vary)
-                 items.push_back(fmt::format("\"{}\" = [{}]", varied.key,
-                                             fmt::join(varied.values, ", ")));
-               return items.empty() ? "" : fmt::format("{{ {} }}", fmt::join(items, ", "));
-             },
-             any);
+  keys.value(
+      {"vary", "-", "further keys of the scene and their values"},
+      [&](TomlReader& table) { sweep.vary = read_varied(table); },
+      [&] {
+        std::vector<std::string> items;
+        for (const VariedKey& varied : sweep.vary)
+          items.push_back(fmt::format("\"{}\" = [{}]", varied.key, fmt::join(varied.values, ", ")));
+        return items.empty() ? "" : fmt::format("{{ {} }}", fmt::join(items, ", "));
+      },
+      any);
 }
 
 ChartTable read_chart(InputFile& file) {
@@ -128,9 +128,8 @@ ChartTable read_chart(InputFile& file) {
 namespace {
 
 std::string text_of(ChartTable chart) {
-  return write_keys([&](Keys& keys) {
-    keys.table({"chart"}, [&](Keys& below) { chart_keys(below, chart); });
-  });
+  return write_keys(
+      [&](Keys& keys) { keys.table({"chart"}, [&](Keys& below) { chart_keys(below, chart); }); });
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ std::vector<std::string> sets_of(const toml::table& entry, PartKind kind) {
 }
 
 /// A --set option for a shell.
-std::string quoted(const std::string& set) { return fmt::format("--set '{}'", set); }
+std::string quoted(const std::string& text) { return fmt::format("--set '{}'", text); }
 
 }  // namespace
 
@@ -71,7 +71,7 @@ std::string ChartPart::command() const {
           ? "repose stability"
           : fmt::format("repose chart {}", part_kinds[static_cast<std::size_t>(kind)]);
   if (!input.empty()) text += " " + input;
-  for (const std::string& set : sets) text += " " + quoted(set);
+  for (const std::string& one : sets) text += " " + quoted(one);
   return text;
 }
 

@@ -96,7 +96,7 @@ FitFile read_fit(const std::filesystem::path& file, std::span<const std::string>
   std::vector<std::string> sets(overrides.begin(), overrides.end());
   for (std::string& start : starts_as_overrides(given)) sets.push_back(std::move(start));
   InputFile input = InputFile::read(file, sets);
-  FitFile out;
+  FitFile out = default_fit();
   read_tables(input, seed, cache, out);
 
   toml::table resolved = given.root();

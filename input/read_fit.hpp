@@ -7,6 +7,7 @@
 #include "calibration/multistart.hpp"
 #include "input/collapse_simulator.hpp"
 #include "input/input_file.hpp"
+#include "input/key_info.hpp"
 #include "models/registry.hpp"
 
 namespace repose::input {
@@ -42,6 +43,12 @@ struct FitFile {
   std::string fingerprint;         ///< of everything that the result of a start depends on
   std::vector<std::string> notes;  ///< what was made of the input that the user may not expect
 };
+
+/// A fit as it is where a file says nothing: 16 starts of Levenberg-Marquardt.
+FitFile default_fit();
+
+/// Every key of a fit.
+std::vector<KeyInfo> fit_infos();
 
 /// Reads and validates a fit and its tables. Throws BadInput with everything that is wrong, IoError
 /// for files that cannot be read.

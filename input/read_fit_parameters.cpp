@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "input/fit_keys.hpp"
+#include "input/read_keys.hpp"
+
 namespace repose::input {
 
 using calibration::FreeParameter;
@@ -19,34 +22,28 @@ FitParameters::Entry FitParameters::read_entry(TomlReader entry, const std::stri
   p.unit = unit;
   const Range finite{std::isfinite(range.lower) ? range.lower : -1e300,
                      std::isfinite(range.upper) ? range.upper : 1e300, false, false};
-  result.of = entry.text("of", "another free parameter, to which this one is a ratio", "");
-  const bool ratio = !result.of.empty();
-  const Range bounds = ratio ? Range{0.0, 1e6, false, false} : finite;
-  const std::string what = ratio ? name + "/" + result.of : std::string(doc);
-  p.lower = entry.number({"lower", ratio ? "-" : unit, "lower bound of " + what, bounds, {}});
-  p.upper = entry.number({"upper", ratio ? "-" : unit, "upper bound of " + what, bounds, {}});
-  const std::size_t fallback = scale == Scale::log && p.lower > 0.0 && !ratio ? 1 : 0;
-  p.scale = entry.choice("scale", {"linear", "log"}, fallback) == 1 ? Scale::log : Scale::linear;
-  p.start = entry.optional_number({"start", ratio ? "-" : unit, "start of " + what, {}, {}});
-  if (entry.has("prior")) {
+  EntryTable given;
+  ReadKeys keys(entry);
+  entry_keys(keys, given, name, unit, doc, finite);
+  result.of = given.of;
+  const bool ratio = !given.of.empty();
+  p.lower = given.lower;
+  p.upper = given.upper;
+  p.start = given.start;
+  p.scale = given.scale.value_or(p.lower > 0.0 && !ratio ? scale : Scale::linear);
+  if (given.has_prior) {
     TomlReader prior = entry.table("prior");
-    const double mean = prior.number({"mean", unit, "expected value", {}, {}});
-    const auto sd = prior.optional_number(
-        {"sd", unit, "standard deviation in the parameter's own unit", positive, {}});
-    const auto share = prior.optional_number(
-        {"relative_sd", "-", "standard deviation as a share of the mean", positive, {}});
-    if (sd.has_value() == share.has_value())
+    if (given.sd.has_value() == given.relative_sd.has_value())
       prior.report(
-          sd ? "relative_sd" : "sd",
+          given.sd ? "relative_sd" : "sd",
           fmt::format("{} needs either sd, in the unit of {} [{}], or relative_sd, a share "
                       "of the mean",
                       entry.path_of("prior"), name, unit));
-    if (share && !(mean > 0.0))
+    if (given.relative_sd && !(given.mean > 0.0))
       prior.report("mean", fmt::format("{} must be > 0 with a relative_sd; got {}",
-                                       prior.path_of("mean"), mean));
-    p.prior = calibration::Prior{mean, sd.value_or(share.value_or(1.0)), share.has_value()};
-  } else {
-    entry.expect("prior");
+                                       prior.path_of("mean"), given.mean));
+    p.prior = calibration::Prior{given.mean, given.sd.value_or(given.relative_sd.value_or(1.0)),
+                                 given.relative_sd.has_value()};
   }
   if (!(p.lower < p.upper) && std::isfinite(p.lower) && std::isfinite(p.upper))
     entry.report("upper", fmt::format("{} = {} must be > lower = {}", entry.path_of("upper"),

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "input/collapse_simulator.hpp"
+#include "input/read_keys.hpp"
 #include "input/read_scene.hpp"
 #include "input/resolved_scene.hpp"
 
@@ -15,39 +16,6 @@ using calibration::Target;
 using point::Quantity;
 
 namespace {
-
-/// A list of "key=value", as for --set.
-std::vector<std::string> read_texts(TomlReader& table, std::string_view key) {
-  std::vector<std::string> texts;
-  const toml::node* node = table.get(key);
-  if (node == nullptr) return texts;
-  if (node->is_array())
-    for (const auto& entry : *node->as_array())
-      if (const auto text = entry.value<std::string>()) texts.push_back(*text);
-  if (!node->is_array() || texts.size() != node->as_array()->size())
-    table.report(key, fmt::format("{} must be a list of overrides, as in [\"grid.h=0.0125\"]; "
-                                  "got {}",
-                                  table.path_of(key), describe(*node)));
-  return texts;
-}
-
-std::vector<std::string> read_names(TomlReader& table, std::string_view key) {
-  table.expect(key);
-  const toml::node* node = table.get(key);
-  std::vector<std::string> names;
-  if (node != nullptr && node->is_string()) names.push_back(*node->value<std::string>());
-  if (node != nullptr && node->is_array())
-    for (const auto& entry : *node->as_array())
-      if (const auto name = entry.value<std::string>()) names.push_back(*name);
-  const bool good =
-      !names.empty() && (!node->is_array() || node->as_array()->size() == names.size());
-  if (!good)
-    table.report(
-        key, fmt::format("{} must be a column or a list of columns, as in [\"q_Pa\", "
-                         "\"u_Pa\"]{}",
-                         table.path_of(key), node == nullptr ? "" : "; got " + describe(*node)));
-  return names;
-}
 
 std::optional<Quantity> quantity(TomlReader& table, std::string_view key, const std::string& name) {
   if (name.empty()) return {};
@@ -71,19 +39,17 @@ void read_noise(TomlReader& noise, calibration::Channel& channel) {
         {channel.name, "-", "standard deviation of the measurement", positive, {}});
     return;
   }
-  TomlReader parts = noise.table(channel.name);
-  const auto absolute = parts.optional_number(
-      {"absolute", "-", "standard deviation of the measurement", positive, {}});
-  const auto relative = parts.optional_number(
-      {"relative", "-", "standard deviation as a share of the value", positive, {}});
-  if (!absolute && !relative) {
+  NoiseParts parts;
+  ReadKeys keys(noise.table(channel.name));
+  noise_part_keys(keys, parts);
+  if (!parts.absolute && !parts.relative) {
     noise.report(channel.name,
                  fmt::format("{} needs absolute, relative or both", noise.path_of(channel.name)));
     return;
   }
   if (channel.observed.size() == 0) return;
   try {
-    calibration::declare_noise(channel, absolute.value_or(0.0), relative.value_or(0.0));
+    calibration::declare_noise(channel, parts.absolute.value_or(0.0), parts.relative.value_or(0.0));
   } catch (const InputError& error) {
     noise.report(channel.name, fmt::format("{}: {}", noise.path_of(channel.name), error.what()));
   }
@@ -113,19 +79,19 @@ std::vector<calibration::Channel> read_channels(TomlReader& table,
 void TargetReader::read(TomlReader& table) {
   Target target;
   TargetAbout about;
-  const std::string x = table.text("x", "the abscissa's column, as in curve.csv");
-  std::vector<std::string> y = read_names(table, "y");
-  about.data = table.text("data", "a CSV table");
+  TargetTable given;
+  ReadKeys keys(table);
+  target_keys(keys, given);
+  const std::string& x = given.x;
+  const std::vector<std::string>& y = given.y;
+  about.data = given.data;
   about.x_label = x;
-  target.name =
-      table.text("name", "for reports", std::filesystem::path(about.data).stem().string());
-  target.weight = table.number({"weight", "-", "weight of the target", positive, 1.0});
-  target.held_out = table.boolean("held_out", false);
-  constexpr std::array comparisons{calibration::Compare::rows, calibration::Compare::interpolate,
-                                   calibration::Compare::distance};
-  const auto compare = comparisons[table.choice("compare", {"rows", "interpolate", "distance"}, 0)];
-  const FitTable data = read_fit_table(table, x, y);
-  const bool scene = table.has("scene");
+  target.name = given.name.empty() ? std::filesystem::path(given.data).stem().string() : given.name;
+  target.weight = given.weight;
+  target.held_out = given.held_out;
+  const auto compare = given.compare;
+  const FitTable data = read_fit_table(table, given);
+  const bool scene = !given.scene.empty();
   const auto x_quantity = scene ? std::optional<Quantity>() : quantity(table, "x", x);
   std::vector<Quantity> y_quantities;
   for (const std::string& name : y)
@@ -140,9 +106,8 @@ void TargetReader::read(TomlReader& table) {
     if (!out_.law_key[i].empty())
       target.bindings.push_back(
           {point::parameter_index(out_.info->parameters, out_.law_key[i]), static_cast<int>(i)});
-  for (const char* key : {"scene", "set", "coarse"}) table.expect(key);
   if (scene) {
-    read_scene_target(table, data, std::move(target), std::move(about));
+    read_scene_target(table, given, data, std::move(target), std::move(about));
     return;
   }
   read_point_target(table, data, {x_quantity, std::move(y_quantities), compare}, std::move(target),
@@ -150,8 +115,8 @@ void TargetReader::read(TomlReader& table) {
 }
 
 /// A full simulation: series.csv's columns over time_s, or depth_m over x_m at the end.
-void TargetReader::read_scene_target(TomlReader& table, const FitTable& data, Target target,
-                                     TargetAbout about) {
+void TargetReader::read_scene_target(TomlReader& table, const TargetTable& given,
+                                     const FitTable& data, Target target, TargetAbout about) {
   const bool profile = target.x_name == "x_m";
   const auto known = collapse_channels();
   if (!profile && target.x_name != "time_s")
@@ -169,12 +134,10 @@ void TargetReader::read_scene_target(TomlReader& table, const FitTable& data, Ta
   if (!profile && !data.x.empty() &&
       !(std::is_sorted(data.x.begin(), data.x.end()) && data.x.front() > 0.0))
     table.report("data", fmt::format("{}: times must grow and be > 0 s", table.path_of("data")));
-  const std::string name = table.text("scene", "a scene file");
-  std::filesystem::path path = name;
+  std::filesystem::path path = given.scene;
   if (path.is_relative()) path = std::filesystem::path(file_.name()).parent_path() / path;
-  const std::vector<std::string> sets = read_texts(table, "set");
-  std::vector<std::string> coarse = sets;
-  for (std::string& text : read_texts(table, "coarse")) coarse.push_back(std::move(text));
+  std::vector<std::string> coarse = given.set;
+  coarse.insert(coarse.end(), given.coarse.begin(), given.coarse.end());
   if (!file_.ok() || data.x.empty()) return;
   const auto simulator = [&](const std::vector<std::string>& with) {
     InputFile input = InputFile::read(path, with);
@@ -190,10 +153,10 @@ void TargetReader::read_scene_target(TomlReader& table, const FitTable& data, Ta
     return std::shared_ptr<const calibration::Simulator>(make_collapse_simulator(std::move(e)));
   };
   if (profile) target.compare = calibration::Compare::interpolate;
-  target.simulator = simulator(sets);
+  target.simulator = simulator(given.set);
   out_.targets.push_back(target);
-  has_coarse_ = has_coarse_ || coarse.size() > sets.size();
-  if (coarse.size() > sets.size()) target.simulator = simulator(coarse);
+  has_coarse_ = has_coarse_ || !given.coarse.empty();
+  if (!given.coarse.empty()) target.simulator = simulator(coarse);
   out_.coarse.push_back(std::move(target));
   out_.about.push_back(std::move(about));
 }

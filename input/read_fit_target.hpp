@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "calibration/point_simulator.hpp"
+#include "input/fit_keys.hpp"
 #include "input/fit_table.hpp"
 #include "input/read_fit.hpp"
 #include "input/read_fit_parameters.hpp"
@@ -37,8 +38,8 @@ class TargetReader {
     calibration::Compare rows;
   };
 
-  void read_scene_target(TomlReader& table, const FitTable& data, calibration::Target target,
-                         TargetAbout about);
+  void read_scene_target(TomlReader& table, const TargetTable& given, const FitTable& data,
+                         calibration::Target target, TargetAbout about);
   // read_fit_point_target.cpp
   void read_point_target(TomlReader& table, const FitTable& data, Compared compared,
                          calibration::Target target, TargetAbout about);

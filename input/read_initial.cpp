@@ -16,9 +16,9 @@ void initial_keys(Keys& keys, InitialConditions& initial) {
   keys.number(
       {"ocr_v", "-", "overconsolidation ratio of vertical stresses, sigma_v,max/sigma_v", from_one},
       initial.ocr_v);
-  keys.number({"K0_nc", "-", "ratio of radial to axial stress at sigma_v,max (default: K0)",
-               positive},
-              initial.K0_nc);
+  keys.number(
+      {"K0_nc", "-", "ratio of radial to axial stress at sigma_v,max (default: K0)", positive},
+      initial.K0_nc);
   keys.number({"v", "-", "specific volume", Range{1.0, positive.upper}}, initial.v);
   std::optional<double> void_ratio;
   keys.number({"e", "-", "void ratio, in place of v = 1 + e", positive}, void_ratio);

@@ -170,10 +170,10 @@ std::string allowed(const KeyInfo& key) {
     case ValueKind::word:
       return quoted(key.words);
     case ValueKind::number_list: {
-      const std::string count = key.most == 0         ? "a list of numbers"
-                                : key.least == key.most ? fmt::format("{} numbers", key.least)
-                                                        : fmt::format("{} or {} numbers", key.least,
-                                                                      key.most);
+      const std::string count = key.most == 0 ? "a list of numbers"
+                                : key.least == key.most
+                                    ? fmt::format("{} numbers", key.least)
+                                    : fmt::format("{} or {} numbers", key.least, key.most);
       return bounded ? fmt::format("{}, each {}", count, range) : count;
     }
     case ValueKind::word_list:
@@ -211,8 +211,7 @@ void add_tables(std::string& page, const std::string& path, const std::vector<Ke
   std::string rows;
   for (const KeyInfo& key : keys) {
     if (key.name.empty()) continue;
-    const std::string what =
-        key.only.empty() ? key.doc : fmt::format("{} ({})", key.doc, key.only);
+    const std::string what = key.only.empty() ? key.doc : fmt::format("{} ({})", key.doc, key.only);
     rows += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.name, key.unit == "-" ? "" : key.unit,
                         allowed(key),
                         key.required           ? "**required**"
@@ -230,12 +229,13 @@ void add_tables(std::string& page, const std::string& path, const std::vector<Ke
       const bool short_form = key.kind == ValueKind::any_of && form.below.size() < 2;
       if (short_form) continue;
       const std::string below = path.empty() ? key.name : path + "." + key.name;
-      page += fmt::format("\n### `{}`\n", form.kind == ValueKind::tables
-                                              ? fmt::format("[[{}]]", below)
-                                              : fmt::format("[{}]", below));
+      page +=
+          fmt::format("\n### `{}`\n", form.kind == ValueKind::tables ? fmt::format("[[{}]]", below)
+                                                                     : fmt::format("[{}]", below));
       if (form.below.size() == 1 && form.below.front().name.empty())
-        page += "\n`name` is one of the laws of `repose models`; `repose models LAW` lists the other "
-                "keys, its parameters.\n";
+        page +=
+            "\n`name` is one of the laws of `repose models`; `repose models LAW` lists the other "
+            "keys, its parameters.\n";
       else
         add_tables(page, below, form.below);
     }
@@ -269,7 +269,8 @@ std::string key_page() {
   std::string page =
       "# Keys of the input files\n\n"
       "Made by `repose schema --page` from the tables that the readers use; a test compares the "
-      "two.\nUnits are SI. `repose schema scene` (`test`, `fit`, `chart`) prints the same as a JSON "
+      "two.\nUnits are SI. `repose schema scene` (`test`, `fit`, `chart`) prints the same as a "
+      "JSON "
       "Schema, which\neditors complete and check from: the shipped files name it in their first "
       "line (`#:schema …`).\n";
   constexpr std::array<std::string_view, 4> titles{

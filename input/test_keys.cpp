@@ -19,12 +19,11 @@ struct ConditionWord {
   std::string_view word;
   Condition condition;
 };
-constexpr std::array triaxial_conditions{ConditionWord{"drained", Condition::drained},
-                                         ConditionWord{"undrained", Condition::undrained},
-                                         ConditionWord{"constant_p", Condition::constant_p},
-                                         ConditionWord{"constant_sigma_r", Condition::drained},
-                                         ConditionWord{"constant_sigma_a",
-                                                       Condition::constant_sigma_a}};
+constexpr std::array triaxial_conditions{
+    ConditionWord{"drained", Condition::drained}, ConditionWord{"undrained", Condition::undrained},
+    ConditionWord{"constant_p", Condition::constant_p},
+    ConditionWord{"constant_sigma_r", Condition::drained},
+    ConditionWord{"constant_sigma_a", Condition::constant_sigma_a}};
 constexpr std::array shear_conditions{
     ConditionWord{"constant_volume", Condition::constant_volume},
     ConditionWord{"constant_normal_stress", Condition::constant_normal_stress},
@@ -45,10 +44,10 @@ void drainage_key(Keys& keys, StageTable& stage) {
     if (list[i].condition == stage.condition) at = i;
   }
   const bool has_any = triaxial || stage.kind == Kind::simple_shear;
-  keys.word(Key{"drainage", "-", "what is kept while the test is driven"}.only_if(
-                has_any || keys.describes(),
-                "only triaxial and simple_shear tests have a drainage"),
-            words, at);
+  keys.word(
+      Key{"drainage", "-", "what is kept while the test is driven"}.only_if(
+          has_any || keys.describes(), "only triaxial and simple_shear tests have a drainage"),
+      words, at);
   if (has_any) stage.condition = list[at].condition;
 }
 
@@ -69,7 +68,8 @@ void stress_rate_key(Keys& keys, StageTable& stage) {
     table.kind = ValueKind::table;
     table.below = describe_keys(components);
     any.below = {number, table};
-    keys.value(key, [](TomlReader&) {}, [] { return std::string(); }, any);
+    keys.value(
+        key, [](TomlReader&) {}, [] { return std::string(); }, any);
   } else if (stage.kind == Kind::custom) {
     keys.table(key, components);
   } else {
@@ -102,27 +102,26 @@ void own_keys(Keys& keys, StageTable& stage) {
   const bool all = keys.describes(), custom = stage.kind == Kind::custom;
   const bool cycles = table != nullptr && table->has("cycles");
   stage.sweeps = table != nullptr && table->has("rates");
-  constexpr std::string_view no_custom = "a custom stage has no such key: it lasts for its duration";
-  keys.integer(Key{"cycles", "-", "number of cycles between the limits"}.only_if(!custom, no_custom),
-               {1, 10000}, stage.cycles);
+  constexpr std::string_view no_custom =
+      "a custom stage has no such key: it lasts for its duration";
+  keys.integer(
+      Key{"cycles", "-", "number of cycles between the limits"}.only_if(!custom, no_custom),
+      {1, 10000}, stage.cycles);
   for (std::size_t i = 0; i < cycle_keys.size(); ++i)
-    for (const auto& [end, values] :
-         {std::pair{"_min", &stage.lowest}, {"_max", &stage.highest}})
-      keys.number(Key{std::string(cycle_keys[i].key) + end, cycle_keys[i].unit, cycle_keys[i].doc}
-                      .only_if(cycles || all, "limits belong to cycles, which are missing"),
-                  (*values)[i]);
-  keys.table(Key{"rates", "-", "a sweep of shear rates"}.only_if(
-                 stage.kind == Kind::simple_shear || all,
-                 "rates belong to kind = \"simple_shear\""),
-             [&](Keys& below) {
-               if (!stage.sweeps && !all) return;
-               below.number({"from", "1/s", "slowest shear rate", positive, required},
-                            stage.slowest);
-               below.number({"to", "1/s", "fastest shear rate", positive, required},
-                            stage.fastest);
-               below.integer({"count", "-", "number of rates", {}, required}, {2, 10000},
-                             stage.rates);
-             });
+    for (const auto& [end, values] : {std::pair{"_min", &stage.lowest}, {"_max", &stage.highest}})
+      keys.number(
+          Key{std::string(cycle_keys[i].key) + end, cycle_keys[i].unit, cycle_keys[i].doc}.only_if(
+              cycles || all, "limits belong to cycles, which are missing"),
+          (*values)[i]);
+  keys.table(
+      Key{"rates", "-", "a sweep of shear rates"}.only_if(
+          stage.kind == Kind::simple_shear || all, "rates belong to kind = \"simple_shear\""),
+      [&](Keys& below) {
+        if (!stage.sweeps && !all) return;
+        below.number({"from", "1/s", "slowest shear rate", positive, required}, stage.slowest);
+        below.number({"to", "1/s", "fastest shear rate", positive, required}, stage.fastest);
+        below.integer({"count", "-", "number of rates", {}, required}, {2, 10000}, stage.rates);
+      });
   keys.choice(Key{"hold", "-", "keep stress (creep) or strain (relaxation) for a duration"}.only_if(
                   !custom, no_custom),
               control_words, stage.hold);
@@ -147,17 +146,17 @@ void custom_keys(Keys& keys, StageTable& stage) {
   constexpr std::string_view only = "strain_rate and constraints belong to kind = \"custom\"";
   keys.table(Key{"strain_rate", "1/s", "components of a custom stage"}.only_if(custom, only),
              [&](Keys& below) { component_keys(below, stage.strain_rate, "1/s"); });
-  keys.tables(Key{"constraints", "-", "a linear constraint on the rates"}.only_if(custom, only),
-              stage.constraints.size(),
-              [&](std::size_t count) { stage.constraints.assign(count, {}); },
-              [&](Keys& below, std::size_t i) {
-                StageTable::Constraint& row = stage.constraints[i];
-                below.table({"strain", "-", "factors of the strain rates"},
-                            [&](Keys& k) { component_keys(k, row.strain, "-"); });
-                below.table({"stress", "1/Pa", "factors of the stress rates"},
-                            [&](Keys& k) { component_keys(k, row.stress, "1/Pa"); });
-                below.number({"rate", "-", "right-hand side"}, row.rate);
-              });
+  keys.tables(
+      Key{"constraints", "-", "a linear constraint on the rates"}.only_if(custom, only),
+      stage.constraints.size(), [&](std::size_t count) { stage.constraints.assign(count, {}); },
+      [&](Keys& below, std::size_t i) {
+        StageTable::Constraint& row = stage.constraints[i];
+        below.table({"strain", "-", "factors of the strain rates"},
+                    [&](Keys& k) { component_keys(k, row.strain, "-"); });
+        below.table({"stress", "1/Pa", "factors of the stress rates"},
+                    [&](Keys& k) { component_keys(k, row.stress, "1/Pa"); });
+        below.number({"rate", "-", "right-hand side"}, row.rate);
+      });
 }
 
 }  // namespace
@@ -179,14 +178,12 @@ void stage_keys(Keys& keys, StageTable& stage) {
   custom_keys(keys, stage);
 }
 
-void test_keys(Keys& keys, TestTable& test,
-               const std::function<void(Keys&, std::size_t)>& stage) {
+void test_keys(Keys& keys, TestTable& test, const std::function<void(Keys&, std::size_t)>& stage) {
   static_assert(static_cast<int>(point::HistoryIs::absolute) == 0);
   static constexpr std::array<std::string_view, 2> history_words{"absolute", "change"};
   strain_key(keys, test.measure);
   keys.choice({"kind", "-", "of the test", {}, required}, kind_words, test.shared.kind);
-  if (test.shared.kind == Kind::simple_shear)
-    test.shared.condition = Condition::constant_volume;
+  if (test.shared.kind == Kind::simple_shear) test.shared.condition = Condition::constant_volume;
   const bool custom = test.shared.kind == Kind::custom || keys.describes();
   constexpr std::string_view only = "a history belongs to kind = \"custom\"";
   keys.text(Key{"history", "-", "a table of the boundary's motion over time"}.only_if(custom, only),
@@ -203,15 +200,16 @@ void test_keys(Keys& keys, TestTable& test,
     custom_keys(keys, test.shared);
   }
   std::size_t count = 1;
-  keys.tables({"stages", "-", "a stage of the test"}, 0, [&](std::size_t n) { count = n; },
-              [&](Keys& below, std::size_t i) {
-                if (stage) {
-                  stage(below, i);
-                } else {
-                  StageTable own = test.shared;
-                  stage_keys(below, own);
-                }
-              });
+  keys.tables(
+      {"stages", "-", "a stage of the test"}, 0, [&](std::size_t n) { count = n; },
+      [&](Keys& below, std::size_t i) {
+        if (stage) {
+          stage(below, i);
+        } else {
+          StageTable own = test.shared;
+          stage_keys(below, own);
+        }
+      });
 }
 
 void integration_keys(Keys& keys, point::Settings& settings) {

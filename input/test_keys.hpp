@@ -53,10 +53,8 @@ inline constexpr std::array cycle_keys{
             true},
     GoalKey{"volumetric_strain", point::Quantity::eps_v, "-", "limit, from where the cycles begin",
             true},
-    GoalKey{"axial_strain_total", point::Quantity::eps_a, "-",
-            "limit, from the start of the test"},
-    GoalKey{"shear_strain_total", point::Quantity::gamma, "-",
-            "limit, from the start of the test"},
+    GoalKey{"axial_strain_total", point::Quantity::eps_a, "-", "limit, from the start of the test"},
+    GoalKey{"shear_strain_total", point::Quantity::gamma, "-", "limit, from the start of the test"},
     GoalKey{"volumetric_strain_total", point::Quantity::eps_v, "-",
             "limit, from the start of the test"}};
 

@@ -298,7 +298,6 @@ TEST_F(FitCommand, AnExcessPorePressureOfADrainedTestIsDoubted) {
       << file.notes[0];
 }
 
-
 TEST_F(FitCommand, EveryBoundOfKappaHoldsWhetherItOverlapsThoseOfLambdaOrNot) {
   // truth κ = 0.062; the user insists on less
   for (const char* lower : {"0.02", "0.05"}) {

@@ -1,0 +1,189 @@
+#include "input/fit_keys.hpp"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "input/key_info.hpp"
+#include "input/read_initial.hpp"
+#include "input/read_law.hpp"
+#include "input/read_point_test.hpp"
+#include "input/test_keys.hpp"
+#include "input/toml_reader.hpp"
+
+namespace repose::input {
+namespace {
+
+constexpr std::array<std::string_view, 2> scale_words{"linear", "log"};
+constexpr std::array<std::string_view, 3> compare_words{"rows", "interpolate", "distance"};
+static_assert(static_cast<int>(calibration::Compare::distance) == 2);
+static_assert(static_cast<int>(Scale::log) == 1);
+
+KeyInfo open_table() {
+  KeyInfo info;
+  info.kind = ValueKind::table;
+  info.open = true;
+  return info;
+}
+
+void nothing(TomlReader&) {}
+std::string no_text() { return {}; }
+
+/// What TargetReader hands on to other readers.
+void describe_target_tables(Keys& keys) {
+  InitialConditions initial;
+  TestTable test;
+  point::Settings settings;
+  NoiseParts parts;
+  KeyInfo noise = open_table();
+  KeyInfo either, number, table;
+  either.name = "CHANNEL";
+  either.kind = ValueKind::any_of;
+  either.doc = "standard deviation of the measurement";
+  number.range = positive;
+  table.kind = ValueKind::table;
+  table.below = describe_keys([&](Keys& below) { noise_part_keys(below, parts); });
+  either.below = {number, table};
+  noise.below = {either};
+  keys.value({"noise", "-", "standard deviation of each channel's measurement"}, nothing, no_text,
+             noise);
+  keys.value({"weights", "-", "of single channels (1)"}, nothing, no_text, open_table());
+  strain_key(keys, test.measure);
+  keys.table({"initial", "-", "the state at the start"},
+             [&](Keys& below) { initial_keys(below, initial); });
+  keys.table({"test", "-", "the path, as in a point test"},
+             [&](Keys& below) { test_keys(below, test); });
+  keys.table({"integration", "-", "how the path is integrated"},
+             [&](Keys& below) { integration_keys(below, settings); });
+  KeyInfo free = open_table();
+  keys.value(
+      {"free", "-",
+       "initial conditions that are fitted too (p, ocr, v, K0, p_c0): bounds as in [fit], or "
+       "the name of a quantity of [fit.shared]"},
+      nothing, no_text, free);
+}
+
+}  // namespace
+
+void entry_keys(Keys& keys, EntryTable& entry, std::string_view name, std::string_view unit,
+                std::string_view doc, const Range& bounds) {
+  keys.text({"of", "-", "another free parameter, to which this one is a ratio"}, entry.of);
+  const bool ratio = !entry.of.empty();
+  const Range range = ratio ? Range{0.0, 1e6, false, false} : bounds;
+  const std::string what = ratio ? fmt::format("{}/{}", name, entry.of) : std::string(doc);
+  const std::string low = "lower bound of " + what, high = "upper bound of " + what,
+                    begin = "start of " + what;
+  const std::string_view own = ratio ? "-" : unit;
+  keys.number({"lower", own, low, range, required}, entry.lower);
+  keys.number({"upper", own, high, range, required}, entry.upper);
+  keys.choice({"scale", "-", "on which it is searched; a parameter's own by default"}, scale_words,
+              entry.scale);
+  keys.number({"start", own, begin}, entry.start);
+  entry.has_prior = keys.reader() != nullptr && keys.reader()->has("prior");
+  keys.table({"prior", "-", "what is known beforehand, a normal distribution"}, [&](Keys& below) {
+    if (!entry.has_prior && !below.describes()) return;
+    below.number({"mean", unit, "expected value", {}, required}, entry.mean);
+    below.number({"sd", unit, "standard deviation in the parameter's own unit", positive},
+                 entry.sd);
+    below.number({"relative_sd", "-", "standard deviation as a share of the mean", positive},
+                 entry.relative_sd);
+  });
+}
+
+void target_keys(Keys& keys, TargetTable& target) {
+  keys.text({"x", "-", "the abscissa's column, as in curve.csv", {}, required}, target.x);
+  keys.text_list(
+      {"y", "-", "a column or a list of columns, as in [\"q_Pa\", \"u_Pa\"]", {}, required},
+      target.y);
+  keys.text({"data", "-", "a measured table", {}, required}, target.data);
+  keys.text({"name", "-", "for reports; the table's name by default"}, target.name);
+  keys.number({"weight", "-", "of the target", positive}, target.weight);
+  keys.boolean({"held_out", "-", "not fitted, but predicted"}, target.held_out);
+  keys.choice({"compare", "-", "row by row, interpolated, or by distance"}, compare_words,
+              target.compare);
+  keys.number({"from", "-", "smallest x that is compared"}, target.from);
+  keys.number({"to", "-", "largest x that is compared"}, target.to);
+  keys.number({"x_shift", "-", "added to the table's x"}, target.x_shift);
+  keys.text({"scene", "-", "a scene file: the target is a full simulation"}, target.scene);
+  constexpr std::string_view only = "set and coarse belong to a target with a scene";
+  const bool scene = !target.scene.empty() || keys.describes();
+  keys.text_list(
+      Key{"set", "-", "overrides of the scene, as in [\"grid.h=0.0125\"]"}.only_if(scene, only),
+      target.set);
+  keys.text_list(Key{"coarse", "-", "further overrides for the first search"}.only_if(scene, only),
+                 target.coarse);
+  if (keys.describes()) describe_target_tables(keys);
+}
+
+void noise_part_keys(Keys& keys, NoiseParts& parts) {
+  keys.number({"absolute", "-", "standard deviation of the measurement", positive}, parts.absolute);
+  keys.number({"relative", "-", "standard deviation as a share of the value", positive},
+              parts.relative);
+}
+
+void solver_keys(Keys& keys, FitFile& fit) {
+  constexpr std::int64_t most = 1000000000;
+  calibration::FitOptions& o = fit.options;
+  std::int64_t global = o.global_evaluations, local = o.local_evaluations,
+               fine = fit.fine_evaluations, seed = static_cast<std::int64_t>(o.seed);
+  keys.text({"global", "-", "a global algorithm of NLopt or \"none\""}, o.global);
+  keys.text({"local", "-", "a local algorithm of NLopt, \"levenberg_marquardt\" or \"none\""},
+            o.local);
+  keys.integer({"starts", "-", "starting points"}, {1, 1000000}, o.starts);
+  keys.integer({"global_evaluations", "-", "of the global search"}, {1, most}, global);
+  keys.integer({"local_evaluations", "-", "per start"}, {1, most}, local);
+  keys.number({"tolerance", "-", "of the parameters over their bounds", Range{0.0, 0.1}},
+              o.x_tolerance);
+  keys.integer(
+      {"fine_evaluations", "-", "of scenes at full resolution, after the search with coarse ones"},
+      {1, most}, fine);
+  keys.boolean({"balance", "-", "targets count alike, whatever their number of rows"}, fit.balance);
+  keys.integer({"seed", "-", "of random numbers"}, {0, std::numeric_limits<std::int64_t>::max()},
+               seed);
+  o.global_evaluations = global;
+  o.local_evaluations = local;
+  fit.fine_evaluations = fine;
+  o.seed = static_cast<std::uint64_t>(seed);
+}
+
+void uncertainty_keys(Keys& keys, FitFile& fit) {
+  keys.boolean({"profile", "-", "profile likelihood of every parameter"}, fit.profiles);
+  keys.number({"resolution", "-",
+               "error of the fine scenes over the change from coarse to fine; 0: none is allowed "
+               "for",
+               Range{0.0, 100.0, false, false}},
+              fit.resolution_error);
+  keys.integer({"bootstrap", "-", "refits of resampled data"}, {0, 100000}, fit.bootstrap);
+}
+
+std::vector<KeyInfo> fit_infos() {
+  LawSpec law;
+  FitFile fit = default_fit();
+  EntryTable entry;
+  TargetTable target;
+  KeyInfo free = open_table(), one, shared = open_table();
+  one.name = "PARAMETER";
+  one.kind = ValueKind::table;
+  one.doc = "a free parameter of the law, with its bounds";
+  one.below = describe_keys(
+      [&](Keys& below) { entry_keys(below, entry, "", "", "the parameter", Range{}); });
+  shared.name = "shared";
+  shared.doc = "quantities that several targets share, by names of your own, as parameters";
+  free.below = {one, shared};
+  return describe_keys([&](Keys& keys) {
+    keys.table({"law", "-", "the law, its options and fixed parameters", {}, required},
+               [&](Keys& below) { law_keys(below, law); });
+    keys.value({"fit", "-", "the free parameters", {}, required}, nothing, no_text, free);
+    keys.tables(
+        {"target", "-", "an experiment", {}, required}, 0, [](std::size_t) {},
+        [&](Keys& below, std::size_t) { target_keys(below, target); });
+    keys.table({"solver", "-", "how the optimum is searched"},
+               [&](Keys& below) { solver_keys(below, fit); });
+    keys.table({"uncertainty", "-", "how sure the result is"},
+               [&](Keys& below) { uncertainty_keys(below, fit); });
+    keys.value({"chart", "-", "of `repose chart fit`: evaluations and seed"}, nothing, no_text,
+               open_table());
+  });
+}
+
+}  // namespace repose::input
