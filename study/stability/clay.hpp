@@ -7,7 +7,7 @@
 
 namespace repose::study {
 
-constexpr std::array clay_updates{point::ClayUpdate::exact, point::ClayUpdate::linearised};
+inline constexpr std::array clay_updates{point::ClayUpdate::exact, point::ClayUpdate::linearised};
 /// "exact", "linearised".
 std::string name_of(point::ClayUpdate update);
 
