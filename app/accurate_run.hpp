@@ -1,26 +1,16 @@
 #pragma once
 /// \file
-/// `repose run SCENE --accuracy E --for QUANTITY`: chooses kernel, transfer, step and cells, runs
-/// coarse and fine ones, and gives what they tend to with an error bar.
-
-#include <optional>
+/// `repose run SCENE --accuracy E --for QUANTITY`: what it writes and says of a study::AccurateRun.
 
 #include "io/exit_code.hpp"
-#include "study/accuracy/quantity.hpp"
+#include "study/accuracy/accurate_run.hpp"
 
 namespace repose::app {
 
-struct AccuracyRequest {
-  input::SceneFile file;
-  std::string origin;  ///< origin_line()
-  study::Quantity quantity = study::Quantity::profile;
-  double target = 0.0;           ///< relative error bar
-  std::optional<double> budget;  ///< CPU seconds
+struct AccuracyRequest : study::AccuracyGoal {
+  std::string origin;            ///< origin_line()
   std::filesystem::path folder;  ///< for the result
-  std::filesystem::path runs;    ///< for the runs; those that lie there are not repeated
-  int threads = 1;               ///< of each run
   std::uint64_t seed = 0;        ///< recorded
-  bool resume = false;           ///< continue an interrupted run from its checkpoint
   bool quiet = false, json = false;
   bool picture = true;  ///< draw accuracy.svg
 };

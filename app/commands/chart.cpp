@@ -6,6 +6,7 @@
 
 #include "input/read_chart.hpp"
 #include "input/read_chart_set.hpp"
+#include "report/plot/gnuplot.hpp"
 
 namespace repose::app {
 namespace {
@@ -122,6 +123,20 @@ io::ExitCode told(const ChartEnd& end, const CommonOptions& options) {
   if (end.kept && !options.quiet && !options.json)
     fmt::print("finished already from the same input; without --resume it is made again\n");
   return end.code;
+}
+
+bool drawn(const report::Figure& figure, const std::filesystem::path& file) {
+  std::string reason;
+  try {
+    figure.render_svg(file);
+    return true;
+  } catch (const report::PlotError& error) {
+    reason = error.what();
+  } catch (const std::logic_error& error) {  // nothing to draw
+    reason = error.what();
+  }
+  fmt::print(stderr, "warning: no {}: {}\n", file.filename().string(), reason);
+  return false;
 }
 
 Command add_chart(CLI::App& root) {

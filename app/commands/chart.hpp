@@ -5,6 +5,7 @@
 /// a chart whose result is there already, from the same input by the same version, is kept.
 
 #include "app/commands/command.hpp"
+#include "report/plot/figure.hpp"
 
 namespace repose::app {
 
@@ -14,6 +15,10 @@ struct ChartEnd {
 };
 /// Says so where a chart was kept; returns its code.
 io::ExitCode told(const ChartEnd& end, const CommonOptions& options);
+
+/// Draws a figure into a file; where it cannot be drawn (no gnuplot, nothing to draw) it warns and
+/// returns false. Errors: IoError.
+bool drawn(const report::Figure& figure, const std::filesystem::path& file);
 
 /// Work-precision of the point driver's integrators, one-step error maps and the convergence of the
 /// laws' tangents. `file` has a [chart] table or is empty; quick: few settings, coarse maps.

@@ -10,7 +10,6 @@
 #include "io/interrupt.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/sweep_picture.hpp"
-#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
 #include "study/accuracy/exact_flow.hpp"
 #include "study/accuracy/sweep.hpp"
@@ -85,7 +84,8 @@ class MpmChart {
     const auto sound = std::count_if(runs_.begin(), runs_.end(),
                                      [](const study::SweepRun& run) { return run.done(); });
     if (sound == 0 && status == "done") status = "failed";
-    const std::optional<study::SweepReference> reference = known_reference();
+    const std::optional<study::SweepReference> reference =
+        study::reference_of(runs_, scene_.scene, sweep_);
     const Json answer = study::sweep_answer(study::series_of(runs_));
     const Json errors = reference ? study::errors_answer(runs_, *reference) : Json(nullptr);
     write_summary(folder, status, static_cast<std::size_t>(sound), answer, errors, before);
@@ -129,27 +129,14 @@ class MpmChart {
     return variants;
   }
 
-  std::optional<study::SweepReference> known_reference() const {
-    return sweep_.exact ? study::exact_reference(runs_, *sweep_.exact)
-                        : study::reference_of(runs_, scene_.scene);
-  }
-
   /// Tables and pictures of what there is so far; returns their names.
   std::vector<std::string> write_outcome(const io::ResultFolder& folder) const {
-    folder.write_file("history.csv", study::history_csv(runs_));
-    std::vector<std::string> files{"chart.csv", "history.csv"};
-    const std::optional<study::SweepReference> reference = known_reference();
-    if (reference) {
-      folder.write_file("errors.csv", study::errors_csv(runs_, *reference));
-      files.push_back("errors.csv");
-      for (const study::Quantity q :
-           {study::Quantity::profile, study::Quantity::kinetic, study::Quantity::momentum}) {
-        const auto& value = reference->values[static_cast<std::size_t>(q)];
-        if (!value) continue;
-        files.push_back(fmt::format("reference_{}.csv", study::name_of(q)));
-        folder.write_file(files.back(), study::curve_csv(value->value, q, runs_.front().scene(),
-                                                         study::common_bin(runs_)));
-      }
+    std::vector<std::string> files{"chart.csv"};
+    const std::optional<study::SweepReference> reference =
+        study::reference_of(runs_, scene_.scene, sweep_);
+    for (const auto& [name, text] : study::outcome_tables(runs_, reference)) {
+      folder.write_file(name, text);
+      files.push_back(name);
     }
     if (std::any_of(runs_.begin(), runs_.end(),
                     [](const study::SweepRun& run) { return run.done(); }))
@@ -179,15 +166,7 @@ class MpmChart {
     const std::string name =
         fmt::format("{} to {:.4g} s", scene_.scene.name, scene_.scene.end_time);
     const auto render = [&](const report::Figure& figure, const std::string& file) {
-      if (options_.no_plot) return;
-      try {
-        figure.render_svg(folder.file(file));
-        files.push_back(file);
-      } catch (const report::PlotError& error) {
-        fmt::print(stderr, "warning: no {}: {}\n", file, error.what());
-      } catch (const std::logic_error& error) {  // nothing to draw
-        fmt::print(stderr, "warning: no {}: {}\n", file, error.what());
-      }
+      if (!options_.no_plot && drawn(figure, folder.file(file))) files.push_back(file);
     };
     if (reference && reference->exact) {
       render(report::flow_figure(runs_, *reference, name), "chart.svg");
@@ -221,16 +200,9 @@ class MpmChart {
     if (options_.json) fmt::print("{}\n", summary.dump());
   }
 
-  /// Of the runs, each with its name.
   std::vector<std::string> warnings() const {
     std::vector<std::string> list = scene_.notes;
-    for (const study::SweepRun& run : runs_) {
-      if (run.status().empty()) continue;
-      for (const std::string& warning : run.summary.warnings)
-        list.push_back(fmt::format("{}: {}", run.scene().name, warning));
-      if (run.status() == "failed")
-        list.push_back(fmt::format("{}: failed: {}", run.scene().name, run.summary.reason));
-    }
+    for (std::string& warning : study::warnings_of(runs_)) list.push_back(std::move(warning));
     return list;
   }
 

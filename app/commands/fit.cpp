@@ -12,7 +12,7 @@
 #include "report/picture/fit_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
-#include "study/fit/fit_record.hpp"
+#include "study/fit/search.hpp"
 #include "study/run/run_record.hpp"
 
 namespace repose::app {
@@ -81,16 +81,11 @@ class FitRun {
       threads.emplace(tbb::global_control::max_allowed_parallelism,
                       static_cast<std::size_t>(options_.threads));
     const io::InterruptGuard interrupt;
-    problem_.interrupt_by([&] { return interrupt.requested(); });
-    if (!file_.coarse.empty())
-      coarse_to_fine(done, interrupt);
-    else if (arguments_.merge.empty())
-      result_.starts =
-          calibration::run_starts(problem_, file_.options, done, [&](const auto& s) { after(s); });
-    else
-      result_.starts = std::move(done);
-    // an interrupted start with no point at all tells nothing
-    std::erase_if(result_.starts, [](const auto& s) { return s.optimum.z.size() == 0; });
+    result_ =
+        study::search(file_, problem_,
+                      {std::move(done), !arguments_.merge.empty(),
+                       [&] { return interrupt.requested(); }, [&](const auto& s) { after(s); }});
+    if (!result_.coarse.empty()) tell_coarse_to_fine();
     const bool interrupted = interrupt.requested();
     if (result_.starts.empty()) {
       write_summary(interrupted ? "interrupted" : "failed", before, {});
@@ -99,7 +94,11 @@ class FitRun {
     }
     if (!interrupted) calibration::settle_priors(problem_, file_.options, result_.starts);
     if (interrupted) problem_.interrupt_by({});
-    analyse(interrupted);
+    study::analyse(file_, problem_, interrupted, result_);
+    for (const std::string& note : study::rows_beyond(file_, problem_, result_.best().z)) {
+      file_.notes.push_back(note);
+      if (!options_.quiet) fmt::print(stderr, "note: {}\n", note);
+    }
     const std::string status = interrupted             ? "interrupted"
                                : result_.best().failed ? "failed"
                                : result_.converged     ? "done"
@@ -134,86 +133,12 @@ class FitRun {
                              .dump());
   }
 
-  /// All starts with the coarse scenes, then the best of them with the fine ones.
-  void coarse_to_fine(const std::vector<calibration::StartResult>& done,
-                      const io::InterruptGuard& interrupt) {
-    calibration::Problem coarse(problem_.space(), file_.coarse, file_.balance);
-    coarse.interrupt_by([&] { return interrupt.requested(); });
-    // merged shares are refined again, from the best of all
-    auto starts =
-        arguments_.merge.empty()
-            ? calibration::run_starts(coarse, file_.options, done, [&](const auto& s) { after(s); })
-            : done;
-    std::erase_if(starts, [](const auto& s) { return s.optimum.z.size() == 0; });
-    if (starts.empty()) return;
-    result_.coarse = starts;
-    calibration::StartResult fine;
-    fine.global = calibration::best_of(starts).optimum;
-    fine.from = fine.global.z;
-    calibration::OptimiseOptions options;
-    options.max_evaluations = file_.fine_evaluations;
-    options.x_tolerance = file_.options.x_tolerance;
-    options.seed = file_.options.seed;
-    fine.optimum = calibration::optimise(
-        problem_, file_.options.local == "none" ? "LN_BOBYQA" : file_.options.local, fine.from,
-        options);
-    result_.starts = {fine};
-    if (!options_.quiet && !options_.json)
-      fmt::print("coarse: objective {:.5g} from {} starts; fine: {:.5g} after {} evaluations\n",
-                 fine.global.objective, starts.size(), fine.optimum.objective,
-                 fine.optimum.evaluations + fine.optimum.gradients);
-  }
-
-  /// What the residuals change by from the coarse scenes to the fine ones at z, as a measure of the
-  /// error that the fine ones still have; empty if there are none or a run broke off.
-  Eigen::VectorXd resolution_error(const Eigen::VectorXd& z) {
-    if (file_.coarse.empty() || !(file_.resolution_error > 0.0)) return {};
-    const calibration::Problem coarse(problem_.space(), file_.coarse, file_.balance);
-    calibration::Evaluation there, here;
-    coarse.evaluate(z, false, there);
-    problem_.evaluate(z, false, here);
-    if (there.failed || here.failed) {
-      file_.notes.push_back("the intervals leave out the error of resolution: a run broke off");
-      return {};
-    }
-    file_.notes.push_back(
-        fmt::format("the intervals hold an error of resolution of {:.3g} times the change from "
-                    "coarse to fine",
-                    file_.resolution_error));
-    return file_.resolution_error * (here.r - there.r);
-  }
-
-  /// Rows of the data that the fitted curve does not reach.
-  void tell_rows_beyond(const Eigen::VectorXd& z) {
-    for (std::size_t k = 0; k < file_.targets.size(); ++k) {
-      if (!file_.targets[k].continues) continue;
-      const auto beyond = problem_.predict(k, z).beyond;
-      if (beyond == 0) continue;
-      file_.notes.push_back(
-          fmt::format("{}: {} of {} rows lie beyond the end of the fitted curve "
-                      "and are compared with its straight continuation",
-                      file_.targets[k].name, beyond, file_.targets[k].rows()));
-      if (!options_.quiet) fmt::print(stderr, "note: {}\n", file_.notes.back());
-    }
-  }
-
-  void analyse(bool interrupted) {
-    const auto& best = result_.best();
-    const Eigen::VectorXd error = resolution_error(best.z);
-    result_.uncertainty = calibration::uncertainty(problem_, best.z, error);
-    result_.clusters = calibration::clusters(problem_, result_.starts);
-    tell_rows_beyond(best.z);
-    result_.converged = calibration::converged(problem_, result_.starts);
-    const bool whole = !interrupted && !best.failed;
-    if (whole && file_.profiles)
-      for (std::size_t i = 0; i < file_.free.size(); ++i)
-        result_.profiles.push_back(
-            calibration::profile(problem_, result_.uncertainty, best.z, static_cast<int>(i)));
-    result_.quoted = calibration::recommend(problem_, result_.uncertainty, result_.profiles);
-    if (whole && file_.bootstrap > 0)
-      result_.bootstrap = calibration::bootstrap(problem_, result_.uncertainty, best.z,
-                                                 file_.bootstrap, file_.options.seed, error);
-    if (!interrupted) result_.causes = calibration::misfit_causes(problem_, best.z);
+  void tell_coarse_to_fine() const {
+    if (options_.quiet || options_.json || result_.starts.empty()) return;
+    const calibration::StartResult& fine = result_.starts.front();
+    fmt::print("coarse: objective {:.5g} from {} starts; fine: {:.5g} after {} evaluations\n",
+               fine.global.objective, result_.coarse.size(), fine.optimum.objective,
+               fine.optimum.evaluations + fine.optimum.gradients);
   }
 
   void write_summary(const std::string& status, const study::Usage& before, const Json& report) {

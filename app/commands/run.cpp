@@ -94,10 +94,9 @@ io::ExitCode run_file(const RunArguments& arguments) {
   request.threads = options.threads;
   request.seed = options.seed;
   request.resume = options.resume;
-  request.picture = report::draw_final_picture;
+  if (!options.no_plot) request.picture = report::draw_final_picture;
   request.quiet = options.quiet;
   request.json = options.json;
-  request.picture = !options.no_plot;
   try {
     return study::run_scene(request);
   } catch (const InputError& error) {

@@ -5,7 +5,7 @@
 
 #include "app/commands/chart.hpp"
 #include "io/interrupt.hpp"
-#include "report/stability/part.hpp"
+#include "report/stability/pictures.hpp"
 #include "repose_version.hpp"
 #include "study/run/finished_result.hpp"
 #include "study/run/run_record.hpp"
@@ -33,21 +33,50 @@ std::string parts_override(const std::string& parts) {
   return fmt::format("stability.parts=[{}]", list);
 }
 
-Json map_part(input::StabilityPart part, const input::StabilityInput& input,
-              report::PartOutput& out) {
-  switch (part) {
-    case input::StabilityPart::clay:
-      return report::map_clay(input, out);
-    case input::StabilityPart::mu_i:
-      return report::map_mu_i(input, out);
-    case input::StabilityPart::step:
-      return report::map_step(input, out);
-    case input::StabilityPart::mpm:
-      return report::map_mpm(input, out);
-    case input::StabilityPart::collapse:
-      return report::map_collapse(input, out);
-  }
-  return {};
+double least_share(const Json& cells) {
+  double least = 1.0;
+  for (const auto& [key, value] : cells.items())
+    least = std::min(least, value["share_converged"].get<double>());
+  return 100.0 * least;
+}
+
+std::string words_for(const study::ClayMaps& maps) {
+  const Json& steps = maps.figures["single_steps"];
+  return fmt::format(
+      "clay: single steps with a result, at least {:.4g} % exact, {:.4g} % linearised",
+      least_share(steps["exact"]), least_share(steps["linearised"]));
+}
+
+std::string words_for(const study::GrainMaps& maps) {
+  const study::ShearCellMaps& cell = maps.shear_cell;
+  return fmt::format(
+      "mu_i: criterion and growth agree on the sign in {} of {} points outside the margin "
+      "({:.4g} %); inside: {} of {}\n"
+      "mu_i: criterion and growth in a Material Point shear cell agree on the sign in {} of {} "
+      "points outside the margin; inside: {} of {}",
+      maps.agree_outside, maps.outside,
+      100.0 * maps.figures["boundary"]["share_outside_margin"].get<double>(), maps.agree_inside,
+      maps.points - maps.outside, cell.agree_outside, cell.outside, cell.agree_inside,
+      cell.points - cell.outside);
+}
+
+std::string words_for(const study::StepMaps& maps) {
+  return fmt::format(
+      "step: stable in the bulk up to Courant {:.3g} (cubic), isolated up to {:.3g} (fluid)",
+      maps.least_in_bulk, maps.least_alone);
+}
+
+std::string words_for(const study::ClayCollapse& run) {
+  const mpm::SeriesRow& last = run.history.rows.back();
+  return fmt::format("collapse: Cam-Clay {}, {} update: {} points without stress at {:.2f} s{}",
+                     run.key, run.linearised ? "linearised" : "exact", last.points_separated,
+                     last.time_s, run.history.failure.empty() ? "" : ", then failed");
+}
+
+std::string words_for(const study::GrainCollapse& run) {
+  const mpm::SeriesRow& last = run.history.rows.back();
+  return fmt::format("collapse: mu(I), {}: {:.2g} J/m at {:.2f} s after {} steps", run.key,
+                     last.kinetic_J_per_m, last.time_s, last.step);
 }
 
 /// The figures of parts that an interrupted run on the same input had done; null if there are none.
@@ -103,11 +132,11 @@ class Maps {
   void make(input::StabilityPart part) {
     const std::string name(input::stability_names[static_cast<std::size_t>(part)]);
     if (parts_.contains(name)) return;
-    report::PartOutput out(folder_, options_.quiet || options_.json, !options_.no_plot);
     const study::Usage start = study::usage();
+    std::vector<std::string> files;
     Json figures;
     try {
-      figures = map_part(part, input_, out);
+      figures = map_part(part, files);
     } catch (const InputError& error) {
       throw input::BadInput(
           {fmt::format("repose stability, {}: {}: {}", name, error.key(), error.what())});
@@ -115,8 +144,58 @@ class Maps {
     const study::Usage end = study::usage();
     figures["cpu_s"] = end.cpu_s - start.cpu_s;
     figures["wall_s"] = end.wall_s - start.wall_s;
-    figures["files"] = out.files();
+    figures["files"] = files;
     parts_[name] = std::move(figures);
+  }
+
+  /// The figures of a part, once it is written; `files` gets the names.
+  Json map_part(input::StabilityPart part, std::vector<std::string>& files) {
+    switch (part) {
+      case input::StabilityPart::clay: {
+        const study::ClayMaps maps = study::map_clay(input_);
+        return leave(maps, report::clay_figures(maps), words_for(maps), files);
+      }
+      case input::StabilityPart::mu_i: {
+        const study::GrainMaps maps = study::map_mu_i(input_);
+        return leave(maps, report::mu_i_figures(maps), words_for(maps), files);
+      }
+      case input::StabilityPart::step: {
+        const study::StepMaps maps = study::map_step(input_);
+        return leave(maps, report::step_figures(maps), words_for(maps), files);
+      }
+      case input::StabilityPart::mpm: {
+        const study::FailureMaps maps = study::map_mpm(input_);
+        return leave(maps, report::mpm_figures(maps),
+                     "mpm: cell crossing, fracture, locking, ringing in mpm_failures.csv", files);
+      }
+      case input::StabilityPart::collapse: {
+        const study::CollapseMaps maps = study::map_collapse(
+            input_, {[&](const study::ClayCollapse& run) { tell(words_for(run)); },
+                     [&](const study::GrainCollapse& run) { tell(words_for(run)); }});
+        return leave(maps, report::collapse_figures(maps), "", files);
+      }
+    }
+    return {};
+  }
+
+  /// Writes tables and pictures, says the words, and returns the part's figures.
+  Json leave(const study::PartMaps& maps, const std::vector<report::Figure>& pictures,
+             const std::string& words, std::vector<std::string>& files) const {
+    for (std::size_t i = 0; i < maps.tables.size(); ++i) {
+      files.push_back(maps.tables[i].name + ".csv");
+      folder_.write_file(files.back(), maps.tables[i].csv);
+      const std::string picture = maps.tables[i].name + ".svg";
+      if (!options_.no_plot && drawn(pictures.at(i), folder_.file(picture)))
+        files.push_back(picture);
+    }
+    tell(words);
+    return maps.figures;
+  }
+
+  void tell(const std::string& words) const {
+    if (options_.quiet || options_.json || words.empty()) return;
+    fmt::print("{}\n", words);
+    std::fflush(stdout);
   }
 
   std::vector<std::string> files() const {

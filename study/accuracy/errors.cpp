@@ -110,6 +110,11 @@ std::optional<SweepReference> reference_of(std::span<const SweepRun> runs,
   return reference;
 }
 
+std::optional<SweepReference> reference_of(std::span<const SweepRun> runs, const mpm::Scene& scene,
+                                           const input::Sweep& sweep) {
+  return sweep.exact ? exact_reference(runs, *sweep.exact) : reference_of(runs, scene);
+}
+
 double error_of(const SweepRun& run, Quantity q, const SweepReference& reference, double bin) {
   const auto& value = reference.values[static_cast<std::size_t>(q)];
   if (!value || !run.done()) return std::nan("");

@@ -42,6 +42,10 @@ std::optional<SweepReference> exact_reference(std::span<const SweepRun> runs,
 /// first variant, transfer and kernel, then the first); absent if there is none.
 std::optional<SweepReference> reference_of(std::span<const SweepRun> runs, const mpm::Scene& scene);
 
+/// What a sweep is measured by: the exact solution where it names one, else extrapolation.
+std::optional<SweepReference> reference_of(std::span<const SweepRun> runs, const mpm::Scene& scene,
+                                           const input::Sweep& sweep);
+
 /// Relative error of a run; NaN where the reference has no such value.
 double error_of(const SweepRun& run, Quantity q, const SweepReference& reference, double bin);
 

@@ -318,4 +318,30 @@ std::string errors_text(const Json& answer) {
   return text;
 }
 
+std::vector<std::pair<std::string, std::string>> outcome_tables(
+    std::span<const SweepRun> runs, const std::optional<SweepReference>& reference) {
+  std::vector<std::pair<std::string, std::string>> tables{{"history.csv", history_csv(runs)}};
+  if (!reference) return tables;
+  tables.emplace_back("errors.csv", errors_csv(runs, *reference));
+  for (const Quantity q : {Quantity::profile, Quantity::kinetic, Quantity::momentum}) {
+    const auto& value = reference->values[static_cast<std::size_t>(q)];
+    if (value)
+      tables.emplace_back(fmt::format("reference_{}.csv", name_of(q)),
+                          curve_csv(value->value, q, runs.front().scene(), common_bin(runs)));
+  }
+  return tables;
+}
+
+std::vector<std::string> warnings_of(std::span<const SweepRun> runs) {
+  std::vector<std::string> list;
+  for (const SweepRun& run : runs) {
+    if (run.status().empty()) continue;
+    for (const std::string& warning : run.summary.warnings)
+      list.push_back(fmt::format("{}: {}", run.scene().name, warning));
+    if (run.status() == "failed")
+      list.push_back(fmt::format("{}: failed: {}", run.scene().name, run.summary.reason));
+  }
+  return list;
+}
+
 }  // namespace repose::study

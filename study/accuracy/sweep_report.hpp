@@ -3,6 +3,11 @@
 /// The tables of `repose chart mpm`, and its answers: does the run-out depend on the step, and what
 /// accuracy does a second buy?
 
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include "study/accuracy/errors.hpp"
@@ -34,6 +39,14 @@ std::string errors_csv(std::span<const SweepRun> runs, const SweepReference& ref
 /// The extrapolated profile (x_m,depth_m) or kinetic energy (time_s,kinetic_J_per_m).
 std::string curve_csv(const Eigen::VectorXd& shares, Quantity q, const mpm::Scene& scene,
                       double bin);
+
+/// history.csv, and where there is a reference errors.csv and reference_QUANTITY.csv of every curve
+/// that it has: name and text.
+std::vector<std::pair<std::string, std::string>> outcome_tables(
+    std::span<const SweepRun> runs, const std::optional<SweepReference>& reference);
+
+/// What the runs warn of and why they failed, each with its name.
+std::vector<std::string> warnings_of(std::span<const SweepRun> runs);
 
 /// The reference with its error bars, and per family and quantity the observed orders and the
 /// constants of the error model.

@@ -8,7 +8,7 @@
 #include "models/registry.hpp"
 #include "pointdriver/study/plane_wave.hpp"
 
-namespace repose::report {
+namespace repose::study {
 
 /// Growth rates within this share of ηk²/ρ are too close to neutral to be judged.
 inline constexpr double neutral_margin = 0.002;
@@ -20,4 +20,4 @@ LawSpec grains_as(const LawSpec& law, const std::string& form,
 /// Shear at an inertial number.
 point::ShearFlow flow_of(const Material& material, double p, double I);
 
-}  // namespace repose::report
+}  // namespace repose::study

@@ -1,9 +1,9 @@
-#include "report/stability/grains.hpp"
+#include "study/stability/grains.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace repose::report {
+namespace repose::study {
 
 LawSpec grains_as(const LawSpec& law, const std::string& form,
                   const std::map<std::string, double>& values) {
@@ -23,4 +23,4 @@ point::ShearFlow flow_of(const Material& material, double p, double I) {
   return {p, I / (material.parameter("d") * std::sqrt(material.parameter("rho_p") / p))};
 }
 
-}  // namespace repose::report
+}  // namespace repose::study
