@@ -28,12 +28,11 @@ class DescribeKeys final : public Keys {
     add(key, ValueKind::text, x.empty() ? "" : toml_string(x));
   }
   void word(const Key& key, std::span<const std::string_view> words, std::size_t& x) override {
-    add(key, ValueKind::word, toml_string(words[x])).words.assign(words.begin(), words.end());
+    name_words(add(key, ValueKind::word, toml_string(words[x])), words);
   }
   void word(const Key& key, std::span<const std::string_view> words,
             std::optional<std::size_t>& x) override {
-    add(key, ValueKind::word, x ? toml_string(words[*x]) : "")
-        .words.assign(words.begin(), words.end());
+    name_words(add(key, ValueKind::word, x ? toml_string(words[*x]) : ""), words);
   }
   void vector(const Key& key, std::size_t axes, std::array<double, 3>& x) override {
     KeyInfo& info = add(key, ValueKind::number_list, toml_vector(x, axes));
@@ -49,7 +48,7 @@ class DescribeKeys final : public Keys {
   }
   void word_list(const Key& key, std::span<const std::string_view> words,
                  std::vector<std::size_t>&) override {
-    add(key, ValueKind::word_list, "").words.assign(words.begin(), words.end());
+    name_words(add(key, ValueKind::word_list, ""), words);
   }
   void text_list(const Key& key, std::vector<std::string>&) override {
     add(key, ValueKind::text_list, "");
@@ -86,8 +85,8 @@ class DescribeKeys final : public Keys {
   KeyInfo& add(const Key& key, ValueKind kind, const std::string& fallback) {
     const auto found = std::find_if(list_.begin(), list_.end(),
                                     [&](const KeyInfo& k) { return k.name == key.name; });
-    KeyInfo& info = found == list_.end() ? list_.emplace_back() : *found;
-    if (found != list_.end()) return info;
+    if (found != list_.end()) return *found;
+    KeyInfo& info = list_.emplace_back();
     info.name = key.name;
     info.kind = kind;
     info.unit = key.unit;
@@ -97,6 +96,9 @@ class DescribeKeys final : public Keys {
     info.fallback = key.presence == required || !key.only.empty() ? "" : fallback;
     info.only = key.only;
     return info;
+  }
+  static void name_words(KeyInfo& info, std::span<const std::string_view> words) {
+    if (info.words.empty()) info.words.assign(words.begin(), words.end());
   }
   static void include(std::vector<KeyInfo>& list, const std::vector<KeyInfo>& more) {
     for (const KeyInfo& info : more) {

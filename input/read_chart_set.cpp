@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "input/key_info.hpp"
 #include "input/read_chart.hpp"
 #include "input/read_keys.hpp"
 
@@ -62,6 +63,12 @@ void chart_part_keys(Keys& keys, ChartPart& part) {
   keys.text({"name", "-", "of its sub-folder; the kind by default"}, part.name);
   keys.choice({"kind", "-", "which chart", {}, required}, part_kinds, part.kind);
   keys.text({"input", "-", "a file or a shipped scene"}, part.input);
+  KeyInfo replaced;
+  replaced.kind = ValueKind::table;
+  replaced.open = true;
+  keys.value(
+      {"quick", "-", "keys that --quick puts in the place of this entry's"}, [](TomlReader&) {},
+      [] { return std::string(); }, replaced);
   keys.text_list({"set", "-", "overrides, as in [\"scene.end_time=0.6\"]"}, part.set);
 }
 

@@ -118,6 +118,12 @@ void wall_key(Keys& keys, std::string_view name, std::string_view doc, Wall& wal
       [&] { return wall_text(wall); }, wall_info());
 }
 
+/// [x, y], in space [x, y, z]; either where the keys are described.
+void place_key(Keys& keys, const Key& key, std::size_t axes, std::array<double, 3>& x) {
+  keys.vector(key, axes, x);
+  if (keys.describes()) keys.vector(key, 3, x);
+}
+
 void domain_keys(Keys& keys, mpm::Scene& scene) {
   std::size_t axes = scene.dimensions();
   if (const TomlReader* const table = keys.reader()) {
@@ -126,8 +132,7 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
   }
   const Key size{"size", "m", "width and height of the box, in space also its depth", positive,
                  required};
-  keys.vector(size, axes, scene.domain);
-  if (keys.describes()) keys.vector(size, 3, scene.domain);
+  place_key(keys, size, axes, scene.domain);
   if (std::isnan(scene.domain[2])) scene.domain[2] = 1.0;  // reported; still a scene in space
   wall_key(keys, "floor", "lower edge", scene.floor);
   keys.value(
@@ -153,18 +158,25 @@ void body_initial_keys(Keys& keys, mpm::Body& body) {
                body.lithostatic);
 }
 
-void disc_keys(Keys& keys, mpm::Body& body, bool space) {
+void disc_keys(Keys& keys, mpm::Body& body, bool is_disc, bool space) {
+  constexpr std::string_view disc_only = "a centre and a radius belong to a disc or a cylinder";
+  constexpr std::string_view space_only = "base and height belong to a cylinder";
+  const bool cylinder = is_disc && space;
   mpm::Disc disc = body.disc.value_or(mpm::Disc{});
   double base = body.origin[1], height = body.size[1];
-  keys.pair({"centre", "m", "of the disc; x and z of a cylinder's axis", {}, required},
+  keys.pair(Key{"centre", "m", "of the disc; x and z of a cylinder's axis", {}, required}.only_if(
+                is_disc, disc_only),
             disc.centre);
-  keys.number({"radius", "m", "of the disc or cylinder", positive, required}, disc.radius);
-  keys.number({"hole", "m", "radius of the hole", not_negative}, disc.hole);
-  if (space || keys.describes()) {
-    keys.number({"base", "m", "y of the cylinder's base"}, base);
-    keys.number({"height", "m", "of the cylinder", positive, required}, height);
-  }
-  if (keys.reader() == nullptr) return;
+  keys.number(
+      Key{"radius", "m", "of the disc or cylinder", positive, required}.only_if(is_disc, disc_only),
+      disc.radius);
+  keys.number(Key{"hole", "m", "radius of the hole (0)", not_negative}.only_if(is_disc, disc_only),
+              disc.hole);
+  keys.number(Key{"base", "m", "y of the cylinder's base (0)"}.only_if(cylinder, space_only), base);
+  keys.number(
+      Key{"height", "m", "of the cylinder", positive, required}.only_if(cylinder, space_only),
+      height);
+  if (keys.reader() == nullptr || !is_disc) return;
   if (space)
     set_cylinder(body, disc, base, height);
   else
@@ -183,13 +195,17 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
             : space          ? std::span<const std::string_view>(in_space)
                              : std::span<const std::string_view>(in_plane),
             shape);
-  if (shape == 0 || keys.describes()) {
-    keys.vector({"origin", "m", "lower left corner of a box"}, axes, body.origin);
-    keys.vector({"size", "m", "width, height and in space depth of a box", positive, required},
-                axes, body.size);
-  }
-  if (shape != 0 || keys.describes()) disc_keys(keys, body, space);
-  keys.vector({"velocity", "m/s", "at the start"}, axes, body.velocity);
+  constexpr std::string_view box_only = "origin and size belong to a box";
+  place_key(keys,
+            Key{"origin", "m", "lower left corner of a box (0)"}.only_if(shape == 0, box_only),
+            axes, body.origin);
+  place_key(
+      keys,
+      Key{"size", "m", "width, height and in space depth of a box", positive, required}.only_if(
+          shape == 0, box_only),
+      axes, body.size);
+  disc_keys(keys, body, shape != 0, space);
+  place_key(keys, {"velocity", "m/s", "at the start"}, axes, body.velocity);
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
   keys.table({"initial", "-", "the state at the start"},
              [&](Keys& below) { body_initial_keys(below, body); });

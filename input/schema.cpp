@@ -244,6 +244,16 @@ void add_tables(std::string& page, const std::string& path, const std::vector<Ke
 
 }  // namespace
 
+SchemaKind schema_kind(std::string_view name) {
+  for (std::size_t k = 0; k < schema_names.size(); ++k)
+    if (schema_names[k] == name) return static_cast<SchemaKind>(k);
+  const std::string near = closest(name, {schema_names.begin(), schema_names.end()});
+  throw BadInput({fmt::format("repose schema: {}one of {} is needed{}",
+                              name.empty() ? "" : fmt::format("there is no '{}': ", name),
+                              fmt::join(schema_names, ", "),
+                              near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
+}
+
 std::vector<KeyInfo> keys_of(SchemaKind kind) {
   switch (kind) {
     case SchemaKind::scene:

@@ -14,6 +14,9 @@ namespace repose::input {
 enum class SchemaKind : std::uint8_t { scene, test, fit, chart };
 constexpr std::array<std::string_view, 4> schema_names{"scene", "test", "fit", "chart"};
 
+/// The kind of that name. Errors: BadInput, with the names there are.
+SchemaKind schema_kind(std::string_view name);
+
 /// Every key of a kind of input.
 std::vector<KeyInfo> keys_of(SchemaKind kind);
 

@@ -89,6 +89,7 @@ Command add_run(CLI::App& root);
 Command add_check(CLI::App& root);
 Command add_models(CLI::App& root);
 Command add_point(CLI::App& root);
+Command add_schema(CLI::App& root);
 Command add_fit(CLI::App& root);
 Command add_chart(CLI::App& root);
 Command add_stability(CLI::App& root);
