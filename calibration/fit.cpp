@@ -124,15 +124,17 @@ FitResult fit(const LawSpec& spec, const std::vector<FreeParameter>& free,
   const Start start = start_of(law, spec, free);
   std::vector<Target> targets;
   for (const Experiment& e : experiments) targets.push_back(target_of(law, start, e));
-  const Problem problem(ParameterSpace(free), std::move(targets));
+  Problem problem(ParameterSpace(free), std::move(targets));
   FitOptions options;
   options.starts = std::max(1, settings.starts);
   options.local = settings.algorithm;
   options.local_evaluations = settings.max_evaluations;
   options.seed = settings.seed;
-  const std::vector<StartResult> starts = run_starts(problem, options);
+  std::vector<StartResult> starts = run_starts(problem, options);
+  settle_priors(problem, options, starts);
   const Optimum& best = best_of(starts).optimum;
   const Uncertainty at = uncertainty(problem, best.z);
+  const std::vector<Recommendation> quoted = recommend(problem, at, {});
 
   FitResult result;
   result.objective = best.objective;
@@ -143,7 +145,7 @@ FitResult fit(const LawSpec& spec, const std::vector<FreeParameter>& free,
   for (std::size_t i = 0; i < free.size(); ++i) {
     const auto k = static_cast<Index>(i);
     result.values.push_back(
-        {free[i].name, at.values[k], at.standard_error[k], at.interval[i], at.at_bound[i]});
+        {free[i].name, at.values[k], at.standard_error[k], quoted[i].interval, at.at_bound[i]});
   }
   for (const ChannelScore& s : score(problem, best.z))
     result.scores.push_back({experiments[s.target].name,

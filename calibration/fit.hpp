@@ -53,7 +53,7 @@ struct FitSettings {
 struct FittedValue {
   std::string name;
   double value = 0.0;
-  double standard_error = 0.0;       ///< infinite where the data say nothing
+  double standard_error = 0.0;       ///< infinite where the data say nothing, NaN at a bound
   std::array<double, 2> interval{};  ///< 95 %, within the bounds
   int at_bound = 0;                  ///< −1 lower, +1 upper, 0 inside
 };

@@ -69,6 +69,7 @@ void read_column_with_gradient(const LawInfo& law, std::span<const double> theta
   if (curve.rows.empty()) return;
   Readout<Gradient> readout;
   readout.frame = test.path.frame;
+  readout.measure = test.path.measure;
   const auto constant = [&](std::string_view name, Gradient& into) {
     const int i = parameter_index(law.parameters, name);
     if (i < 0) return;
