@@ -151,7 +151,7 @@ const char* to_text(Lanes lanes) {
 }
 
 const bool registered = [] {
-  for (const LawInfo& law : all_laws()) {
+  for (const LawInfo& law : library_laws()) {
     const std::string base = "batch/" + std::string(law.name) + "/" + std::string(law.option);
     if (!law.has_stress_memory) {
       benchmark::RegisterBenchmark(base.c_str(), batch_update, &law, Lanes::plastic);

@@ -1,5 +1,8 @@
 #include "calibration/path_derivatives.hpp"
 
+#include "models/all_laws.hpp"
+#include "pointdriver/integrate/outside_driver.hpp"
+#include "pointdriver/integrate/plain_rows.hpp"
 #include "pointdriver/integrate/start.hpp"
 
 namespace repose::calibration {
@@ -10,18 +13,77 @@ using Eigen::Index;
 constexpr int width = 6;  ///< derivatives carried at a time
 using D = Dual<width>;
 
-/// The numbers a path starts from: completed parameters, stress and state, density.
+/// What a law of the library is driven by: its type. Numbers, here and below, are all that a path
+/// starts from: completed parameters, stress and state, density.
 template <class L>
-bool start_numbers(const InitialConditions& fixed, std::span<const double> inputs,
+struct LibraryDrive {
+  std::size_t parameters() const { return L::parameters.size(); }
+
+  /// Throws InputError.
+  std::vector<double> start(std::span<const double> theta, const point::PointTest& test) const {
+    std::vector<double> numbers = point::completed<L>(theta);
+    const auto start = point::plain_start<L>(std::span<const double>(numbers), test);
+    numbers.insert(numbers.end(), start.stress_and_state.begin(), start.stress_and_state.end());
+    numbers.push_back(start.density);
+    return numbers;
+  }
+
+  point::Outcome drive(std::span<const D> numbers, std::span<const double> plain,
+                       const point::PointTest& test, point::BasicCurve<D>& curve,
+                       point::Readout<D>& readout) const {
+    constexpr std::size_t n = L::parameters.size();
+    point::ElementStart<L, D> start;
+    start.plain = L::template Params<double>::from(plain.first(n));
+    start.parameters = L::template Params<D>::from(numbers.first(n));
+    for (std::size_t i = 0; i < start.stress_and_state.size(); ++i)
+      start.stress_and_state[i] = numbers[n + i];
+    start.density = numbers.back();
+    const point::Outcome outcome = point::drive_path<L, D>(start, test.path, test.settings, curve);
+    readout = point::make_readout(start, test.path.frame);
+    return outcome;
+  }
+};
+
+/// The same of a law from outside, through plain numbers.
+struct OutsideDrive {
+  const LawInfo& law;
+  const point::OutsideDriver& driver;
+
+  std::size_t parameters() const { return law.parameters.size(); }
+  std::vector<double> start(std::span<const double> theta, const point::PointTest& test) const {
+    return driver.start(theta, test);
+  }
+  point::Outcome drive(std::span<const D> numbers, std::span<const double> plain,
+                       const point::PointTest& test, point::BasicCurve<D>& curve,
+                       point::Readout<D>& readout) const {
+    static_assert(width == point::OutsideDriver::slope_width);
+    std::vector<double> slopes;
+    for (int k = 0; k < width; ++k)
+      for (const D& x : numbers) slopes.push_back(x.v[k]);
+    point::Curve values;
+    std::vector<point::Curve> slope_curves;
+    driver.drive(plain, slopes, test, values, slope_curves);
+    join(values, slope_curves, curve);
+    readout.frame = test.path.frame;
+    if (const int i = point::parameter_index(law.parameters, "rho_p"); i >= 0)
+      readout.rho_p = numbers[static_cast<std::size_t>(i)];
+    if (const int i = point::parameter_index(law.parameters, "d"); i >= 0)
+      readout.d = numbers[static_cast<std::size_t>(i)];
+    readout.p_c_index = point::state_index(law.state, "p_c");
+    const std::size_t n = parameters();
+    readout.sigma_r_start = D(-0.5) * (numbers[n] + numbers[n + 2]);
+    return curve.outcome;
+  }
+};
+
+template <class Law>
+bool start_numbers(const Law& law, const InitialConditions& fixed, std::span<const double> inputs,
                    std::vector<double>& out) {
   try {
-    const PointInputs in = split_inputs(L::parameters.size(), fixed, inputs);
+    const PointInputs in = split_inputs(law.parameters(), fixed, inputs);
     point::PointTest test;
     test.initial = in.initial;
-    out = point::completed<L>(in.theta);
-    const auto start = point::plain_start<L>(std::span<const double>(out), test);
-    out.insert(out.end(), start.stress_and_state.begin(), start.stress_and_state.end());
-    out.push_back(start.density);
+    out = law.start(in.theta, test);
     return true;
   } catch (const InputError&) {
     return false;
@@ -30,9 +92,9 @@ bool start_numbers(const InitialConditions& fixed, std::span<const double> input
 
 /// d(start numbers)/d(input i): central, or one-sided of second order where one side is not
 /// admissible (ocr = 1).
-template <class L>
-bool start_slope(const InitialConditions& fixed, std::span<const double> inputs, int i,
-                 const std::vector<double>& here, std::vector<double>& slope) {
+template <class Law>
+bool start_slope(const Law& law, const InitialConditions& fixed, std::span<const double> inputs,
+                 int i, const std::vector<double>& here, std::vector<double>& slope) {
   std::vector<double> moved(inputs.begin(), inputs.end()), a, b;
   double& x = moved[static_cast<std::size_t>(i)];
   const double x0 = x;
@@ -40,7 +102,7 @@ bool start_slope(const InitialConditions& fixed, std::span<const double> inputs,
   slope.assign(here.size(), 0.0);
   const auto at = [&](double shift, std::vector<double>& out) {
     x = x0 + shift;
-    return start_numbers<L>(fixed, moved, out);
+    return start_numbers(law, fixed, moved, out);
   };
   const bool above = at(h, a), below = at(-h, b);
   if (above && below) {
@@ -54,39 +116,29 @@ bool start_slope(const InitialConditions& fixed, std::span<const double> inputs,
   return true;
 }
 
-template <class L>
-point::Outcome drive(const InitialConditions& fixed, std::span<const double> inputs,
+template <class Law>
+point::Outcome drive(const Law& law, const InitialConditions& fixed, std::span<const double> inputs,
                      std::span<const int> wanted, const point::PointTest& test,
                      std::span<const point::Quantity> quantities, std::vector<Column>& columns,
                      std::vector<int>& legs) {
-  constexpr std::size_t n_theta = L::parameters.size();
+  const std::size_t n_theta = law.parameters();
   point::Outcome outcome;
   outcome.status = point::Status::bad_initial;
   std::vector<double> here, slope;
-  if (!start_numbers<L>(fixed, inputs, here)) return outcome;
+  if (!start_numbers(law, fixed, inputs, here)) return outcome;
   std::vector<D> numbers;
   for (const double x : here) numbers.emplace_back(x);
   for (std::size_t k = 0; k < wanted.size(); ++k) {
-    if (!start_slope<L>(fixed, inputs, wanted[k], here, slope)) return outcome;
+    if (!start_slope(law, fixed, inputs, wanted[k], here, slope)) return outcome;
     if (static_cast<std::size_t>(wanted[k]) < n_theta)
       slope[static_cast<std::size_t>(wanted[k])] = 1.0;
     for (std::size_t i = 0; i < here.size(); ++i)
       numbers[i].v[static_cast<Index>(k)] = std::isfinite(slope[i]) ? slope[i] : 0.0;
   }
-  const std::span<const D> theta(numbers.data(), n_theta);
-  point::ElementStart<L, D> start;
-  start.plain = L::template Params<double>::from(std::span<const double>(here.data(), n_theta));
-  start.parameters = L::template Params<D>::from(theta);
-  std::array<double, 6> stress{};
-  for (std::size_t i = 0; i < start.stress_and_state.size(); ++i) {
-    start.stress_and_state[i] = numbers[n_theta + i];
-    if (i < 6) stress[i] = here[n_theta + i];
-  }
-  start.density = numbers.back();
-  if (!point::suits(test.path, stress)) return outcome;
+  if (!point::suits(test.path, std::span<const double>(here).subspan(n_theta, 6))) return outcome;
   thread_local point::BasicCurve<D> curve;
-  outcome = point::drive_path<L, D>(start, test.path, test.settings, curve);
-  point::Readout<D> readout = point::make_readout(start, test.path.frame);
+  point::Readout<D> readout;
+  outcome = law.drive(numbers, here, test, curve, readout);
   readout.measure = test.path.measure;
   point::set_pore_pressure_datum(curve.rows, test.path.first_undrained, readout);
   const auto rows = static_cast<Index>(curve.rows.size());
@@ -135,14 +187,15 @@ point::Outcome simulate_with_derivatives(const LawInfo& law, const InitialCondit
     column.slope.resize(0, 0);
   }
   legs.clear();
-  return visit_law(law, [&]<class L>(L) {
+  const auto in_passes = [&](const auto& driven) {
     std::vector<Column> part;
     point::Outcome outcome;
     // the steps are chosen by values alone, so every pass takes the same ones
     for (std::size_t first = 0; first == 0 || first < wanted.size(); first += width) {
       const std::size_t count = std::min<std::size_t>(width, wanted.size() - first);
       part.resize(quantities.size());
-      outcome = drive<L>(fixed, inputs, wanted.subspan(first, count), test, quantities, part, legs);
+      outcome =
+          drive(driven, fixed, inputs, wanted.subspan(first, count), test, quantities, part, legs);
       if (outcome.status == point::Status::bad_initial) return outcome;
       for (std::size_t c = 0; c < quantities.size(); ++c) {
         Eigen::MatrixXd joined(part[c].slope.rows(), static_cast<Index>(first + count));
@@ -153,7 +206,12 @@ point::Outcome simulate_with_derivatives(const LawInfo& law, const InitialCondit
       }
     }
     return outcome;
-  });
+  };
+  return visit_law(
+      law, [&]<class L>(L) { return in_passes(LibraryDrive<L>{}); },
+      [&] {
+        return in_passes(OutsideDrive{law, point::outside_driver(law)});
+      });
 }
 
 }  // namespace repose::calibration

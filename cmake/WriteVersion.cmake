@@ -32,7 +32,7 @@ file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 #pragma once
 
 namespace repose {
-/// The release: 0.1.0
+/// The release: @VERSION@
 inline constexpr const char* version = "@VERSION@";
 /// git describe of the source; empty outside a checkout
 inline constexpr const char* revision = "@hash@";

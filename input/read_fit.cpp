@@ -65,7 +65,8 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
              std::any_of(info.parameters.begin(), info.parameters.end(),
                          [&](const ParamInfo& p) { return p.name == name; });
     };
-    if (std::none_of(all_laws().begin(), all_laws().end(), has)) continue;  // reported later
+    const LawList laws = all_laws();
+    if (std::none_of(laws.begin(), laws.end(), has)) continue;  // reported later
     if (law != nullptr && law->contains(name)) {
       problems.push_back(fmt::format("{}: {} is fixed in [law] and free in [fit]: leave out one",
                                      to_string(file.origin("fit." + name)), name));

@@ -3,6 +3,7 @@
 /// Every law of the library, as a type. A new law is one header and one entry in AllLaws.
 
 #include <cstddef>
+#include <string>
 #include <tuple>
 #include <type_traits>
 
@@ -21,20 +22,35 @@ using AllLaws =
                MuIElastoviscoplastic, MuIRegularised, MuIBarkerGray, Newtonian<Tension::cut_off>,
                Newtonian<Tension::carried>, NeoHookean>;
 
-/// Calls f(law) with a value of the law type that belongs to `info` (one of all_laws()).
-template <class F>
-auto visit_law(const LawInfo& info, F&& f) {
+/// Calls f(law) with a value of the law type that belongs to `info` (one of library_laws()), or
+/// otherwise() for a law that is none of the library's.
+template <class F, class Otherwise>
+auto visit_law(const LawInfo& info, F&& f, Otherwise&& otherwise) {
   using Result = decltype(f(std::tuple_element_t<0, AllLaws>{}));
   const auto try_from = [&]<std::size_t i>(const auto& self,
                                            std::integral_constant<std::size_t, i>) -> Result {
-    using L = std::tuple_element_t<i, AllLaws>;
-    if constexpr (i + 1 < std::tuple_size_v<AllLaws>) {
+    if constexpr (i == std::tuple_size_v<AllLaws>) {
+      return otherwise();
+    } else {
+      using L = std::tuple_element_t<i, AllLaws>;
       if (L::name != info.name || L::option != info.option)
         return self(self, std::integral_constant<std::size_t, i + 1>{});
+      return f(L{});
     }
-    return f(L{});
   };
   return try_from(try_from, std::integral_constant<std::size_t, 0>{});
+}
+
+/// The same where only the library's own laws will do; throws InputError (key "name") for another.
+template <class F>
+auto visit_law(const LawInfo& info, F&& f) {
+  using Result = decltype(f(std::tuple_element_t<0, AllLaws>{}));
+  return visit_law(info, f, [&]() -> Result {
+    throw InputError("name", "\"" + std::string(info.name) +
+                                 (info.option.empty() ? "" : ", " + std::string(info.option)) +
+                                 "\" is none of the library's own laws, and this works with those "
+                                 "alone");
+  });
 }
 
 }  // namespace repose

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "models/all_laws.hpp"
+#include "models/registry.hpp"
+#include "models/shear_response.hpp"
 
 namespace repose {
 
@@ -42,14 +44,21 @@ double lower_neutral_inertial_number(double mu_0, double mu_d, double I_0) {
 
 std::optional<ShearResponse> shear_response(const Material& material, double p, double gamma_dot) {
   if (!(p > 0.0) || !(gamma_dot > 0.0)) return {};
-  return visit_law(material.law(), [&]<class L>(L) -> std::optional<ShearResponse> {
-    if constexpr (requires(const typename L::template Params<double>& P) {
-                    L::steady_shear_stress(P, 1.0, 1.0);
-                  })
-      return shear_response<L>(material.theta(), p, gamma_dot);
-    else
-      return std::nullopt;
-  });
+  using Response = std::optional<ShearResponse>;
+  const LawInfo& law = material.law();
+  return visit_law(
+      law,
+      [&]<class L>(L) -> Response {
+        if constexpr (HasSteadyShear<L>)
+          return shear_response<L>(material.theta(), p, gamma_dot);
+        else
+          return std::nullopt;
+      },
+      [&]() -> Response {
+        const OutsideLaw* outside = find_outside(law);
+        if (outside->shear_response == nullptr) return std::nullopt;
+        return outside->shear_response(material.theta(), p, gamma_dot);
+      });
 }
 
 }  // namespace repose

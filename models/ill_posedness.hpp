@@ -7,7 +7,6 @@
 
 #include <optional>
 
-#include "models/dual.hpp"
 #include "models/material.hpp"
 
 namespace repose {
@@ -18,17 +17,6 @@ struct ShearResponse {
   double chi = 0.0;    ///< χ = ∂ln τ/∂ln γ̇ at constant p; for τ = μ(I)p: Iμ′/μ [-]
   double slope = 0.0;  ///< m = ∂τ/∂p at constant γ̇; for τ = μ(I)p: μ(1 − χ/2) [-]
 };
-
-/// Of a law L that has steady_shear_stress(P, p, γ̇); p, γ̇ > 0.
-template <class L>
-ShearResponse shear_response(std::span<const double> theta, double p, double gamma_dot) {
-  using T = Dual<2>;
-  std::array<T, L::parameters.size()> wide;
-  for (std::size_t k = 0; k < wide.size(); ++k) wide[k] = T(theta[k]);
-  const auto P = L::template Params<T>::from(std::span<const T>(wide));
-  const T tau = L::steady_shear_stress(P, T(p, 0), T(gamma_dot, 1));
-  return {tau.a, tau.v[1] * gamma_dot / tau.a, tau.v[0]};
-}
 
 /// C = m² − 4χ(1 − χ), which is 4(χ² − χ) + μ²(1 − χ/2)² for τ = μ(I)p: ill-posed where it is > 0
 /// (and χ < ½, as for every μ(I) in use).
@@ -49,7 +37,7 @@ double fastest_direction(const ShearResponse& response);
 double lower_neutral_inertial_number(double mu_0, double mu_d, double I_0);
 
 /// Response of a material at p [Pa] and γ̇ [1/s]; absent for a law without such a stress and where
-/// p or γ̇ is not > 0.
+/// p or γ̇ is not > 0. Throws InputError for a law that is in no registry.
 std::optional<ShearResponse> shear_response(const Material& material, double p, double gamma_dot);
 
 }  // namespace repose

@@ -11,6 +11,7 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -94,6 +95,7 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 ///   elastic_volume_strain(P, σ, state, ρ)  −∫dp/K from p = 0 (or where contact is made) [-]
 ///   density_at(P, p, ocr)            ρ at rest under pressure p [kg/m³]
 ///   initial(P, conditions)           InitialPoint; throws InputError
+/// LawDefaults answers what a simple law has no more to say about.
 template <class L>
 concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
                                    const Increment<double, 4>& inc, Sym<double, 4>& stress,
@@ -117,6 +119,21 @@ concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
   { L::elastic_volume_strain(P, stress, state, x) } -> std::same_as<double>;
   { L::density_at(P, x, x) } -> std::same_as<double>;
   { L::initial(P, given) } -> std::same_as<InitialPoint>;
+};
+
+/// For a law to inherit: one form, no state variables, no condition between parameters, no yield.
+struct LawDefaults {
+  static constexpr std::string_view option_key = "";
+  static constexpr std::string_view option = "";
+  static constexpr bool iterates = false;
+  static constexpr std::array<StateField, 0> state{};
+  template <class T>
+  using State = std::array<T, 0>;
+  static void complete(std::vector<double>&) {}
+  template <class P, class T, class S, int N>
+  static T yield(const P&, const Sym<T, N>&, const S&, const T&, const Sym<T, N>&) {
+    return T(-std::numeric_limits<double>::infinity());
+  }
 };
 
 }  // namespace repose

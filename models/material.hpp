@@ -8,11 +8,12 @@
 #include <string>
 
 #include "models/law.hpp"
+#include "models/padding.hpp"
 
 namespace repose {
 
 /// A run of material points with N tensor components (sym.hpp). Every array has room for
-/// padded(count) entries (scalar.hpp), and the entries behind `count` hold copies of valid points.
+/// padded(count) entries (padding.hpp), and the entries behind `count` hold copies of valid points.
 template <int N>
 struct BatchOf {
   static constexpr auto components = static_cast<std::size_t>(N);
@@ -53,7 +54,7 @@ struct UpdateReport {
 /// A law with its parameters.
 class Material {
  public:
-  virtual ~Material() = default;
+  virtual ~Material();
   Material(const Material&) = delete;
   Material& operator=(const Material&) = delete;
 

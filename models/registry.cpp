@@ -28,10 +28,11 @@ std::string did_you_mean(std::string_view misspelt, const std::vector<std::strin
 }  // namespace
 
 void complete_parameters(const LawInfo& law, std::vector<double>& theta) {
-  visit_law(law, [&]<class L>(L) { L::complete(theta); });
+  visit_law(
+      law, [&]<class L>(L) { L::complete(theta); }, [&] { find_outside(law)->complete(theta); });
 }
 
-std::span<const LawInfo> all_laws() {
+std::span<const LawInfo> library_laws() {
   static const std::vector<LawInfo> table = collect(static_cast<const AllLaws*>(nullptr));
   return table;
 }
@@ -98,10 +99,16 @@ std::vector<double> checked_parameters(const LawSpec& spec) {
 
 std::unique_ptr<Material> make_material(const LawSpec& spec) {
   std::vector<double> theta = checked_parameters(spec);
-  return visit_law(find_law(spec), [&]<class L>(L) -> std::unique_ptr<Material> {
-    return std::make_unique<LawMaterial<L>>(std::move(theta));
-  });
+  const LawInfo& law = find_law(spec);
+  return visit_law(
+      law,
+      [&]<class L>(L) -> std::unique_ptr<Material> {
+        return std::make_unique<LawMaterial<L>>(std::move(theta));
+      },
+      [&]() -> std::unique_ptr<Material> { return find_outside(law)->make(std::move(theta)); });
 }
+
+Material::~Material() = default;
 
 double Material::parameter(std::string_view parameter_name) const {
   const auto table = law().parameters;

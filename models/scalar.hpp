@@ -16,59 +16,59 @@
 
 #include <xsimd/xsimd.hpp>
 
+#include "models/padding.hpp"
 #include "models/scalar_traits.hpp"
 
 namespace repose {
 
-/// One SIMD register of doubles for the instruction set the library is compiled for.
+/// One SIMD register of doubles for the instruction set that this file is compiled for, which its
+/// name says: code for two of them may stand in one program.
 using Pack = xsimd::batch<double>;
 
 /// Two packs that go through a law together. A law that iterates is a chain of operations each of
 /// which waits for the one before; a second chain beside it fills the waiting.
-struct Twin {
-  static constexpr std::size_t size = 2 * Pack::size;
-  Pack a, b;
+template <class P>
+struct TwinOf {
+  static constexpr std::size_t size = 2 * P::size;
+  P a, b;
 
-  Twin() = default;
-  Twin(const Pack& first, const Pack& second) : a(first), b(second) {}
-  explicit Twin(double x) : a(x), b(x) {}
-  static Twin load_unaligned(const double* from) {
-    return {Pack::load_unaligned(from), Pack::load_unaligned(from + Pack::size)};
+  TwinOf() = default;
+  TwinOf(const P& first, const P& second) : a(first), b(second) {}
+  explicit TwinOf(double x) : a(x), b(x) {}
+  static TwinOf load_unaligned(const double* from) {
+    return {P::load_unaligned(from), P::load_unaligned(from + P::size)};
   }
   void store_unaligned(double* to) const {
     a.store_unaligned(to);
-    b.store_unaligned(to + Pack::size);
+    b.store_unaligned(to + P::size);
   }
 
   /// What a comparison of two gives.
   struct Mask {
-    Pack::batch_bool_type a, b;
+    typename P::batch_bool_type a, b;
     friend Mask operator&&(const Mask& x, const Mask& y) { return {x.a && y.a, x.b && y.b}; }
     friend Mask operator||(const Mask& x, const Mask& y) { return {x.a || y.a, x.b || y.b}; }
     [[gnu::always_inline]] friend Mask operator!(const Mask& x) { return {!x.a, !x.b}; }
   };
 
-  friend Twin operator+(const Twin& x, const Twin& y) { return {x.a + y.a, x.b + y.b}; }
-  friend Twin operator-(const Twin& x, const Twin& y) { return {x.a - y.a, x.b - y.b}; }
-  friend Twin operator*(const Twin& x, const Twin& y) { return {x.a * y.a, x.b * y.b}; }
-  friend Twin operator/(const Twin& x, const Twin& y) { return {x.a / y.a, x.b / y.b}; }
-  friend Twin operator-(const Twin& x) { return {-x.a, -x.b}; }
-  friend Mask operator<(const Twin& x, const Twin& y) { return {x.a < y.a, x.b < y.b}; }
-  friend Mask operator>(const Twin& x, const Twin& y) { return {x.a > y.a, x.b > y.b}; }
-  friend Mask operator<=(const Twin& x, const Twin& y) { return {x.a <= y.a, x.b <= y.b}; }
-  friend Mask operator>=(const Twin& x, const Twin& y) { return {x.a >= y.a, x.b >= y.b}; }
-  friend Mask operator==(const Twin& x, const Twin& y) { return {x.a == y.a, x.b == y.b}; }
-  friend Twin sqrt(const Twin& x) { return {xsimd::sqrt(x.a), xsimd::sqrt(x.b)}; }
-  friend Twin log(const Twin& x) { return {xsimd::log(x.a), xsimd::log(x.b)}; }
-  friend Twin exp(const Twin& x) { return {xsimd::exp(x.a), xsimd::exp(x.b)}; }
-  friend Twin expm1(const Twin& x) { return {xsimd::expm1(x.a), xsimd::expm1(x.b)}; }
+  friend TwinOf operator+(const TwinOf& x, const TwinOf& y) { return {x.a + y.a, x.b + y.b}; }
+  friend TwinOf operator-(const TwinOf& x, const TwinOf& y) { return {x.a - y.a, x.b - y.b}; }
+  friend TwinOf operator*(const TwinOf& x, const TwinOf& y) { return {x.a * y.a, x.b * y.b}; }
+  friend TwinOf operator/(const TwinOf& x, const TwinOf& y) { return {x.a / y.a, x.b / y.b}; }
+  friend TwinOf operator-(const TwinOf& x) { return {-x.a, -x.b}; }
+  friend Mask operator<(const TwinOf& x, const TwinOf& y) { return {x.a < y.a, x.b < y.b}; }
+  friend Mask operator>(const TwinOf& x, const TwinOf& y) { return {x.a > y.a, x.b > y.b}; }
+  friend Mask operator<=(const TwinOf& x, const TwinOf& y) { return {x.a <= y.a, x.b <= y.b}; }
+  friend Mask operator>=(const TwinOf& x, const TwinOf& y) { return {x.a >= y.a, x.b >= y.b}; }
+  friend Mask operator==(const TwinOf& x, const TwinOf& y) { return {x.a == y.a, x.b == y.b}; }
+  friend TwinOf sqrt(const TwinOf& x) { return {xsimd::sqrt(x.a), xsimd::sqrt(x.b)}; }
+  friend TwinOf log(const TwinOf& x) { return {xsimd::log(x.a), xsimd::log(x.b)}; }
+  friend TwinOf exp(const TwinOf& x) { return {xsimd::exp(x.a), xsimd::exp(x.b)}; }
+  friend TwinOf expm1(const TwinOf& x) { return {xsimd::expm1(x.a), xsimd::expm1(x.b)}; }
 };
 
-/// Batches are processed in whole SIMD registers, at most two at a time.
-constexpr std::size_t pack_size = Twin::size;
-constexpr std::size_t padded(std::size_t count) {
-  return (count + pack_size - 1) / pack_size * pack_size;
-}
+using Twin = TwinOf<Pack>;
+static_assert(pack_size % Twin::size == 0);
 
 template <>
 struct ScalarTraits<Pack> {

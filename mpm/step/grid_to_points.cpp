@@ -163,11 +163,11 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   double* const pressure_before = array();
   const bool follows_rate = !points.material->law().has_stress_memory;
   const Pack step(dt), zero(0.0);
-  Pack least_volume(1.0);               // det(I + A)
-  if (n - range.count >= Pack::size) {  // padding that no pack of points reaches is at rest
-    for (double* const component : e) std::fill_n(component + n - Pack::size, Pack::size, 0.0);
-    for (double* const component : spin) std::fill_n(component + n - Pack::size, Pack::size, 0.0);
-  }
+  Pack least_volume(1.0);  // det(I + A)
+  // padding that no pack of points reaches is at rest
+  const std::size_t reached = (range.count + Pack::size - 1) / Pack::size * Pack::size;
+  for (double* const component : e) std::fill(component + reached, component + n, 0.0);
+  for (double* const component : spin) std::fill(component + reached, component + n, 0.0);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     std::array<Pack, F::gradient> A;
     for (std::size_t i = 0; i < A.size(); ++i)

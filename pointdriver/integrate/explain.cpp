@@ -1,7 +1,6 @@
 #include <cstdio>
 
 #include "pointdriver/integrate/simulate.hpp"
-#include "pointdriver/integrate/start.hpp"
 #include "pointdriver/integrate/strength.hpp"
 
 namespace repose::point {

@@ -25,7 +25,8 @@ using GradientCurve = BasicCurve<Gradient>;
 /// Drives the test with derivatives with respect to the parameters at `which` (indices into
 /// law.parameters; at most gradient_width, more need several passes). `theta` as given by the user:
 /// parameters that the law derives must be NaN to follow the others. Status unsupported for methods
-/// other than adaptive and implicit.
+/// other than adaptive and implicit. Throws InputError (key "name") for a law that is unknown or
+/// was registered without a point driver.
 Outcome simulate_with_gradient(const LawInfo& law, std::span<const double> theta,
                                std::span<const int> which, const PointTest& test,
                                GradientCurve& curve);
@@ -38,7 +39,7 @@ void read_column_with_gradient(const LawInfo& law, std::span<const double> theta
 
 /// Rows of a strain-rate or mixed control test by CVODES with forward sensitivities with respect to
 /// `parameter`: the stress and its derivative at each row. One leg that ends on time, laws with a
-/// yield surface only.
+/// yield surface only, of the library alone: throws InputError (key "name") for another.
 struct CvodesRow {
   double time;
   Sym<double, 6> stress, derivative;

@@ -2,6 +2,7 @@
 #include <nvector/nvector_serial.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include "models/all_laws.hpp"
 #include "models/dual.hpp"
 #include "pointdriver/integrate/dual_start.hpp"
 #include "pointdriver/integrate/sensitivity.hpp"

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "models/all_laws.hpp"
+#include "pointdriver/integrate/outside_driver.hpp"
 #include "pointdriver/integrate/start.hpp"
 
 namespace repose::point {
@@ -13,22 +15,41 @@ std::string digits(double x) {
   return text.data();
 }
 
+/// The stress in the numbers that a path starts from (flat_start).
+std::span<const double> stress_of(const LawInfo& law, const std::vector<double>& numbers) {
+  return std::span(numbers).subspan(law.parameters.size(), 6);
+}
+
 }  // namespace
 
 Outcome simulate(const LawInfo& law, std::span<const double> theta, const PointTest& test,
                  Curve& curve) {
-  return visit_law(law, [&]<class L>(L) -> Outcome {
-    try {
-      const ElementStart<L, double> start = plain_start<L>(theta, test);
-      if (suits(test.path, start.stress_and_state))
-        return drive_path<L, double>(start, test.path, test.settings, curve);
-    } catch (const InputError&) {
-    }
+  const auto bad_initial = [&] {
     curve.rows.clear();
     curve.outcome = {};
     curve.outcome.status = Status::bad_initial;
     return curve.outcome;
-  });
+  };
+  return visit_law(
+      law,
+      [&]<class L>(L) -> Outcome {
+        try {
+          const ElementStart<L, double> start = plain_start<L>(theta, test);
+          if (suits(test.path, start.stress_and_state))
+            return drive_path<L, double>(start, test.path, test.settings, curve);
+        } catch (const InputError&) {
+        }
+        return bad_initial();
+      },
+      [&]() -> Outcome {
+        const OutsideDriver& driver = outside_driver(law);
+        try {
+          const std::vector<double> numbers = driver.start(theta, test);
+          if (suits(test.path, stress_of(law, numbers))) return driver.drive(numbers, test, curve);
+        } catch (const InputError&) {
+        }
+        return bad_initial();
+      });
 }
 
 void read_column(const LawInfo& law, std::span<const double> theta, const PointTest& test,
@@ -66,7 +87,9 @@ std::vector<Quantity> columns_of(const LawInfo& law, const PointTest& test) {
 }
 
 Method method_for(const LawInfo& law, Method method) {
-  return visit_law(law, [&]<class L>(L) { return chosen_method<L>(method); });
+  return visit_law(
+      law, [&]<class L>(L) { return chosen_method<L>(method); },
+      [&] { return outside_driver(law).method_for(method); });
 }
 
 std::string_view name_of(Method method) {
@@ -84,34 +107,51 @@ std::optional<Method> find_method(std::string_view name) {
 
 double start_value(const LawInfo& law, std::span<const double> theta, const PointTest& test,
                    Quantity quantity) {
-  return visit_law(law, [&]<class L>(L) {
-    const ElementStart<L, double> start = plain_start<L>(theta, test);
-    Row<double> row;
-    for (std::size_t i = 0; i < 6; ++i) row.stress.c[i] = start.stress_and_state[i];
-    for (std::size_t i = 0; i < L::state.size(); ++i) row.state[i] = start.stress_and_state[6 + i];
-    row.density = start.density;
-    return read(quantity, row, make_readout(start, test.path.frame));
-  });
+  return visit_law(
+      law,
+      [&]<class L>(L) {
+        const ElementStart<L, double> start = plain_start<L>(theta, test);
+        Row<double> row;
+        for (std::size_t i = 0; i < 6; ++i) row.stress.c[i] = start.stress_and_state[i];
+        for (std::size_t i = 0; i < L::state.size(); ++i)
+          row.state[i] = start.stress_and_state[6 + i];
+        row.density = start.density;
+        return read(quantity, row, make_readout(start, test.path.frame));
+      },
+      [&] {
+        const std::vector<double> numbers = outside_driver(law).start(theta, test);
+        Curve curve;
+        Row<double>& row = curve.rows.emplace_back();
+        for (std::size_t i = 0; i < 6; ++i) row.stress.c[i] = stress_of(law, numbers)[i];
+        for (std::size_t i = 0; i < law.state.size(); ++i)
+          row.state[i] = numbers[law.parameters.size() + 6 + i];
+        row.density = numbers.back();
+        std::vector<double> value;
+        read_column(law, theta, test, curve, quantity, value);
+        return value.front();
+      });
 }
 
 void check_start(const LawInfo& law, std::span<const double> theta, const PointTest& test) {
-  visit_law(law, [&]<class L>(L) {
-    const ElementStart<L, double> start = plain_start<L>(theta, test);
-    if (const StartClaim* claim = contradicted(test.path, start.stress_and_state)) {
-      const bool stress = claim->of.stress != std::array<double, 6>{};
+  const auto check = [&](std::span<const double> stress) {
+    if (const StartClaim* claim = contradicted(test.path, stress)) {
+      const bool of_stress = claim->of.stress != std::array<double, 6>{};
       throw InputError("history", claim->table + ": the first row says " + claim->column + " = " +
-                                      digits(claim->value) + (stress ? " Pa" : "") +
+                                      digits(claim->value) + (of_stress ? " Pa" : "") +
                                       ", and the test starts at " +
-                                      digits(claimed_quantity(*claim, start.stress_and_state)) +
-                                      (stress ? " Pa: give the same stress in [initial]"
-                                              : ": strains are zero at the start") +
+                                      digits(claimed_quantity(*claim, stress)) +
+                                      (of_stress ? " Pa: give the same stress in [initial]"
+                                                 : ": strains are zero at the start") +
                                       ", or history_is = \"change\" if only the differences count");
     }
-    if (!suits(test.path, start.stress_and_state))
+    if (!suits(test.path, stress))
       throw InputError(test.initial.sigma ? "sigma" : "initial",
                        "this test needs an initial stress with equal radial stresses (xx = zz) and "
                        "no shear components");
-  });
+  };
+  visit_law(
+      law, [&]<class L>(L) { check(plain_start<L>(theta, test).stress_and_state); },
+      [&] { check(stress_of(law, outside_driver(law).start(theta, test))); });
 }
 
 }  // namespace repose::point

@@ -2,12 +2,22 @@
 /// \file
 /// The point driver's front door: a law's parameters and a test in, a curve out.
 ///
-///     const auto& law = find_law(spec);
-///     point::PointTest test{point::path_of({stage}), {.p = 100e3, .ocr = 1.0}};
-///     point::Curve curve;
-///     point::simulate(law, theta, test, curve);        // reuse the curve: no further allocation
-///     for (const auto& row : curve.rows) …
-///     std::vector<double> q = point::column(law, theta, test, curve, point::Quantity::q);
+/// ```cpp
+/// #include <repose/models/registry.hpp>
+/// const LawSpec spec{"neo_hookean", {}, {{"E", 1e6}, {"nu", 0.3}, {"rho_0", 1000.0}}};
+/// const LawInfo& law = find_law(spec);
+/// const std::vector<double> theta = checked_parameters(spec);
+/// point::Stage stage;  // drained triaxial compression, unless told otherwise
+/// stage.goal = point::Goal{point::Quantity::eps_a, 0.1};
+/// point::PointTest test;
+/// test.path = point::path_of({stage});
+/// test.initial.p = 1e3;
+/// point::Curve curve;
+/// point::simulate(law, theta, test, curve);  // reuse the curve: no further allocation
+/// for (const auto& row : curve.rows) std::printf("%g\n", row.stress.c[1]);
+/// std::vector<double> q;
+/// point::read_column(law, theta, test, curve, point::Quantity::q, q);
+/// ```
 
 #include "models/material.hpp"
 #include "pointdriver/path/laboratory.hpp"
@@ -24,8 +34,9 @@ struct PointTest {
 
 /// Drives the law of `law` (an entry of all_laws()) with parameters `theta` along the test. Absent
 /// optional parameters may be NaN. Ranges of single parameters are not checked here. Never throws
-/// and never loops without bound: see Outcome; explain() puts it in words. Allocates nothing but
-/// what the curve's memory and the law's initial state need.
+/// for numbers and never loops without bound: see Outcome; explain() puts it in words. Allocates
+/// nothing but what the curve's memory and the law's initial state need. Throws InputError (key
+/// "name") for a law that is unknown or was registered without a point driver.
 Outcome simulate(const LawInfo& law, std::span<const double> theta, const PointTest& test,
                  Curve& curve);
 

@@ -3,7 +3,6 @@
 /// From a parameter vector and initial conditions to an element ready to be driven, in plain
 /// numbers or with derivatives.
 
-#include "models/all_laws.hpp"
 #include "models/dual.hpp"
 #include "pointdriver/integrate/drive.hpp"
 #include "pointdriver/integrate/simulate.hpp"
@@ -55,6 +54,17 @@ inline const StartClaim* contradicted(const Path& path, std::span<const double> 
     if (!(std::abs(claimed_quantity(claim, stress) - claim.value) <= claim.tolerance))
       return &claim;
   return nullptr;
+}
+
+/// Everything that depends on the parameters before the first step, in one row: the completed
+/// parameters, stress and state, density.
+template <class L>
+std::vector<double> flat_start(std::span<const double> theta, const PointTest& test) {
+  std::vector<double> flat = completed<L>(theta);
+  const ElementStart<L, double> start = plain_start<L>(theta, test);
+  flat.insert(flat.end(), start.stress_and_state.begin(), start.stress_and_state.end());
+  flat.push_back(start.density);
+  return flat;
 }
 
 /// Does the initial stress suit the path?

@@ -29,7 +29,7 @@ std::vector<Case> cases() {
                       {"rho_p", 2000.0}, {"rho_0", 1300.0}, {"K", 254800.0}};
   const Values fluid{{"eta", 0.002}, {"K", 26000.0}, {"alpha", 7.0}, {"rho_0", 1300.0}};
   std::vector<Case> list;
-  for (const LawInfo& law : all_laws()) {
+  for (const LawInfo& law : library_laws()) {
     Case one{{std::string(law.name), {}, grains}, 1e3, 5e-3, 1e-3};
     if (!law.option_key.empty())
       one.spec.options[std::string(law.option_key)] = std::string(law.option);

@@ -46,7 +46,7 @@ class SolverDigest : public ::testing::Test {
   /// As the build would note it.
   std::string digest(const std::string& compiled = "g++ 12 -O3") {
     const std::string line = std::string("'" REPOSE_CMAKE "' -DSOURCE_DIR='") + source_.string() +
-                             "' -DVERSION=0.1.0 -DCOMPILED='" + compiled + "' -DOUTPUT='" +
+                             "' -DVERSION=0.2.0 -DCOMPILED='" + compiled + "' -DOUTPUT='" +
                              output_.string() +
                              "' -P '" REPOSE_SOURCE_DIR "/cmake/WriteVersion.cmake'";
     EXPECT_EQ(std::system(line.c_str()), 0) << line;

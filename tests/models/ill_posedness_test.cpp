@@ -4,6 +4,7 @@
 
 #include "models/ill_posedness.hpp"
 
+#include "models/shear_response.hpp"
 #include "tests/models/law_samples.hpp"
 
 namespace repose {

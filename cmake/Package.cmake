@@ -1,0 +1,20 @@
+# `cpack -G DEB` in the build folder: one Debian package with the program, the libraries, what links
+# them, and the licence. Configure it with -DREPOSE_NATIVE=OFF, or it runs on this machine's kind only.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME repose)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_VENDOR "The repose authors")
+set(CPACK_PACKAGE_CONTACT "The repose authors <repose@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+# Which packages hold the shared libraries that these link, by dpkg-shlibdeps (package dpkg-dev).
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
+# Pictures; and what a law of one's own is compiled with.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, libeigen3-dev, libxsimd-dev, libceres-dev")
+include(CPack)
