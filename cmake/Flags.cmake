@@ -24,6 +24,10 @@ if(REPOSE_SANITIZE)
     -fsanitize=${REPOSE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(repose_flags INTERFACE -fsanitize=${REPOSE_SANITIZE})
 endif()
+if(REPOSE_FUZZ)
+  # every translation unit reports the branches it takes
+  target_compile_options(repose_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 # Includes are written from the repository root: #include "models/sym.hpp"
 target_include_directories(repose_flags INTERFACE ${PROJECT_SOURCE_DIR})
 

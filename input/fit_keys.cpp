@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "input/key_info.hpp"
+#include "input/measured_columns.hpp"
 #include "input/read_initial.hpp"
 #include "input/read_law.hpp"
 #include "input/read_point_test.hpp"
@@ -112,6 +113,7 @@ void target_keys(Keys& keys, TargetTable& target) {
       target.set);
   keys.text_list(Key{"coarse", "-", "further overrides for the first search"}.only_if(scene, only),
                  target.coarse);
+  describe_table_keys(keys);
   if (keys.describes()) describe_target_tables(keys);
 }
 

@@ -67,6 +67,10 @@ class InputFile {
   void report(const InputError& error, std::string_view prefix = "");
   bool ok() const { return problems_.empty(); }
 
+  /// Tells of a measured table that the file names, how it was understood: lines for `check`.
+  void add_table(std::string description) { tables_.push_back(std::move(description)); }
+  const std::vector<std::string>& tables() const { return tables_; }
+
   /// Declares the keys that a table may hold; any other is reported by throw_if_bad().
   void expect(std::string_view table_path, std::string_view key);
   /// The table may hold any key: somebody else checks them.
@@ -94,6 +98,7 @@ class InputFile {
   std::map<std::string, std::set<std::string, std::less<>>, std::less<>> expected_;
   std::set<std::string, std::less<>> any_key_;
   std::vector<Problem> problems_;
+  std::vector<std::string> tables_;
 };
 
 /// The known word that a misspelt one stands for, if one is close (nearest_name()) or has the same

@@ -99,6 +99,7 @@ FitFile read_fit(const std::filesystem::path& file, std::span<const std::string>
   InputFile input = InputFile::read(file, sets);
   FitFile out = default_fit();
   read_tables(input, seed, cache, out);
+  out.tables = input.tables();
 
   toml::table resolved = given.root();
   resolved.erase("chart");  // says nothing of the fit

@@ -39,9 +39,10 @@ struct FitFile {
   /// fine at the coarse optimum.
   double resolution_error = 1.0;
   std::shared_ptr<CollapseCount> runs = std::make_shared<CollapseCount>();
-  std::string resolved;            ///< the input as TOML, --set included, tables by absolute path
-  std::string fingerprint;         ///< of everything that the result of a start depends on
-  std::vector<std::string> notes;  ///< what was made of the input that the user may not expect
+  std::string resolved;             ///< the input as TOML, --set included, tables by absolute path
+  std::string fingerprint;          ///< of everything that the result of a start depends on
+  std::vector<std::string> tables;  ///< how each measured table was understood
+  std::vector<std::string> notes;   ///< what was made of the input that the user may not expect
 };
 
 /// A fit as it is where a file says nothing: 16 starts of Levenberg-Marquardt.

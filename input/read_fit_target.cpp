@@ -91,6 +91,7 @@ void TargetReader::read(TomlReader& table) {
   target.held_out = given.held_out;
   const auto compare = given.compare;
   const FitTable data = read_fit_table(table, given);
+  if (!data.note.empty()) out_.notes.push_back(data.note);
   const bool scene = !given.scene.empty();
   const auto x_quantity = scene ? std::optional<Quantity>() : quantity(table, "x", x);
   std::vector<Quantity> y_quantities;

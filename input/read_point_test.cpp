@@ -1,15 +1,14 @@
 #include "input/read_point_test.hpp"
 
 #include <cmath>
-#include <system_error>
 
 #include <fmt/format.h>
 
 #include "input/doubts.hpp"
+#include "input/history_table.hpp"
 #include "input/read_initial.hpp"
 #include "input/read_keys.hpp"
 #include "input/test_keys.hpp"
-#include "io/atomic_file.hpp"
 #include "pointdriver/path/history.hpp"
 
 namespace repose::input {
@@ -225,15 +224,12 @@ point::LegSpec leg_of(TomlReader& table, const StageTable& given, const PathRead
 }
 
 point::Path history_of(TomlReader& table, const TestTable& test, const PathReading& reading) {
-  std::filesystem::path file = test.history;
-  if (file.is_relative()) file = std::filesystem::path(table.file().name()).parent_path() / file;
+  const auto history = read_history_table(table, test.history);
+  if (!history) return {};
   try {
-    return point::history_path(point::read_table(file), test.history_is, reading.measure,
-                               reading.max_strain);
+    return point::history_path(*history, test.history_is, reading.measure, reading.max_strain);
   } catch (const point::TableError& error) {
     table.report("history", error.what());
-  } catch (const std::system_error& error) {
-    throw io::IoError(file, error.code().message());
   }
   return {};
 }

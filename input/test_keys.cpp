@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "input/key_info.hpp"
+#include "input/measured_columns.hpp"
 #include "input/toml_reader.hpp"
 
 namespace repose::input {
@@ -191,6 +192,7 @@ void test_keys(Keys& keys, TestTable& test, const std::function<void(Keys&, std:
   keys.choice(Key{"history_is", "-", "what the table's columns hold: values, or changes"}.only_if(
                   custom, only),
               history_words, test.history_is);
+  describe_table_keys(keys);
   if (!test.history.empty()) return;
   shared_keys(keys, test.shared);
   const TomlReader* const table = keys.reader();

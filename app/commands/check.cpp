@@ -83,6 +83,16 @@ std::string law_title(const LawSpec& law) {
   return fmt::format("{}, {}", info.name, info.option);
 }
 
+/// How the measured tables were understood, below what else is told of a file.
+void print_tables(const std::vector<std::string>& tables) {
+  for (const std::string& table : tables) {
+    std::string text = "  table " + table;
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1))
+      text.insert(at + 1, "    ");
+    fmt::print("{}\n", text);
+  }
+}
+
 io::ExitCode check_point_test(input::InputFile& input, const CommonOptions& options) {
   const input::PointTestFile file = input::read_point_test(input);
   if (!options.quiet)
@@ -93,6 +103,7 @@ io::ExitCode check_point_test(input::InputFile& input, const CommonOptions& opti
         "  integration  {}\n",
         input.name(), file.name, law_title(file.law), file.test.path.legs.size(),
         point::name_of(point::method_for(find_law(file.law), file.test.settings.method)));
+  if (!options.quiet) print_tables(input.tables());
   for (const std::string& note : file.notes) fmt::print(stderr, "warning: {}\n", note);
   return io::ExitCode::done;
 }
@@ -106,6 +117,7 @@ io::ExitCode check_fit(const std::string& path, const CommonOptions& options) {
         "  free parameters  {}\n"
         "  targets          {}\n",
         path, file.name, law_title(file.law), file.free.size(), file.targets.size());
+  if (!options.quiet) print_tables(file.tables);
   for (const std::string& note : file.notes) fmt::print(stderr, "warning: {}\n", note);
   return io::ExitCode::done;
 }

@@ -1,46 +1,15 @@
 #include "pointdriver/path/history.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include "models/parameter.hpp"
 
 namespace repose::point {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
-    text.remove_suffix(1);
-  return text;
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 [[noreturn]] void fail(const std::string& name, int line, const std::string& what) {
   throw TableError(name + ":" + std::to_string(line) + ": " + what);
-}
-
-double number(std::string_view text, const std::string& name, int line, const std::string& column) {
-  double x = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(x))
-    fail(
-        name, line,
-        "column " + column + " holds \"" + std::string(text) + "\", and a finite number is needed");
-  return x;
 }
 
 std::string text_of(double x) {
@@ -122,54 +91,6 @@ bool involves(const std::vector<std::pair<Constraint, std::size_t>>& rows, std::
     if (row.strain[component] != 0.0 || row.stress[component] != 0.0) return true;
   return false;
 }
-
-}  // namespace
-
-Table parse_table(std::string_view text, std::string name) {
-  Table table;
-  table.name = std::move(name);
-  int line_number = 0;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    ++line_number;
-    if (line.empty() || line.front() == '#') continue;
-    const auto fields = fields_of(line);
-    if (table.columns.empty()) {
-      for (const std::string_view field : fields) {
-        if (field.empty()) fail(table.name, line_number, "a column has no name");
-        if (std::find(table.columns.begin(), table.columns.end(), field) != table.columns.end())
-          fail(table.name, line_number, "column " + std::string(field) + " appears twice");
-        table.columns.emplace_back(field);
-      }
-      table.values.resize(table.columns.size());
-      continue;
-    }
-    if (fields.size() != table.columns.size())
-      fail(table.name, line_number,
-           std::to_string(fields.size()) + " values, and the header names " +
-               std::to_string(table.columns.size()) + " columns");
-    if (table.lines.size() >= 1000000) fail(table.name, line_number, "more than 1000000 rows");
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      table.values[i].push_back(number(fields[i], table.name, line_number, table.columns[i]));
-    table.lines.push_back(line_number);
-  }
-  if (table.columns.empty()) throw TableError(table.name + ": the file names no columns");
-  if (table.lines.empty()) throw TableError(table.name + ": no rows after the header");
-  return table;
-}
-
-Table read_table(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in)
-    throw std::system_error(std::make_error_code(std::errc::no_such_file_or_directory),
-                            file.string());
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  return parse_table(text, file.string());
-}
-
-namespace {
 
 /// What a column holds in SI and logarithmic strain.
 std::vector<double> column_values(const Table& table, std::size_t c, const Prescribed& p,

@@ -2,7 +2,7 @@
 /// \file
 /// Prescribed histories from a table: measured strains or stresses over time become a path.
 
-#include <filesystem>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,20 +17,13 @@ class TableError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A CSV table of numbers: lines starting with # are comments, the first other line names the
-/// columns, values are separated by commas.
+/// A table of numbers, as somebody has read it off a file.
 struct Table {
   std::string name;  ///< for messages
   std::vector<std::string> columns;
   std::vector<std::vector<double>> values;  ///< by column
   std::vector<int> lines;                   ///< line of each row in the file
 };
-
-/// Reads a table. Throws TableError with the line for a row of the wrong length, a value that is no
-/// finite number (nan, inf, text), a repeated column name, no rows, or more than 10⁶ rows;
-/// std::system_error if the file cannot be read.
-Table read_table(const std::filesystem::path& file);
-Table parse_table(std::string_view text, std::string name);
 
 /// What the columns of a history hold: values, or changes from wherever the test starts.
 enum class HistoryIs : std::uint8_t { absolute, change };

@@ -159,9 +159,11 @@ TEST_F(FitCommand, TellsWhatIsWrongAndWhere) {
   EXPECT_NE(
       complaint(replaced(good, "x = \"eps_a\"", "x = \"epsa\"")).find("did you mean 'eps_a'?"),
       std::string::npos);
-  EXPECT_NE(complaint(replaced(good, "\"u_Pa\"", "\"v\""))
-                .find("has no column for v; its columns are eps_a_percent, q_kPa, u_kPa"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint(replaced(good, "\"u_Pa\"", "\"v\""))
+          .find(
+              "there is no column \"v\"; its columns are 1 (eps_a_percent), 2 (q_kPa), 3 (u_kPa)"),
+      std::string::npos);
   EXPECT_NE(complaint(replaced(good, "starts = 6", "local = \"LD_SLSPQ\""))
                 .find("did you mean \"LD_SLSQP\"?"),
             std::string::npos);

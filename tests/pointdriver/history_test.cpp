@@ -3,14 +3,30 @@
 
 #include <gtest/gtest.h>
 
+#include "io/measured_table.hpp"
 #include "tests/pointdriver/test_material.hpp"
 
 namespace repose::point {
 namespace {
 
-std::string message_of(std::string_view text) {
+/// The columns and numbers of a text, units left to the names.
+Table table_of(const std::string& text) {
+  const io::RawTable raw = io::parse_table(text, "h.csv");
+  Table table;
+  table.name = "h.csv";
+  for (std::size_t c = 0; c < raw.columns(); ++c) {
+    table.columns.push_back(raw.headers()[c].text);
+    const io::MeasuredColumn column = io::read_column(
+        raw, {.name = table.columns.back(), .number = static_cast<int>(c) + 1, .unit = "-"});
+    table.values.push_back(column.values);
+    table.lines = column.file_rows;
+  }
+  return table;
+}
+
+std::string message_of(const std::string& text) {
   try {
-    history_path(parse_table(text, "h.csv"));
+    history_path(table_of(text));
   } catch (const TableError& error) {
     return error.what();
   }
@@ -22,10 +38,9 @@ TEST(History, a_measured_strain_path_is_followed) {
   // loading, unloading, reloading in axial strain at constant radial stress
   PointTest test;
   test.path =
-      history_path(parse_table("# a comment\n"
-                               "time_s,eps_a_percent,sigma_r_kPa\n"
-                               "0,0,100\n10,1,100\n20,0.8,100\n40,3,110\n",
-                               "h.csv"));
+      history_path(table_of("# a comment\n"
+                            "time_s,eps_a_percent,sigma_r_kPa\n"
+                            "0,0,100\n10,1,100\n20,0.8,100\n40,3,110\n"));
   test.initial.p = 100e3;
   test.initial.ocr = 1.0;
   test.settings.method = Method::adaptive;
@@ -43,10 +58,10 @@ TEST(History, a_measured_strain_path_is_followed) {
 }
 
 /// Cam-Clay at p = 100 kPa driven along a table.
-PointTest history_test(std::string_view text, HistoryIs is = HistoryIs::absolute,
+PointTest history_test(const std::string& text, HistoryIs is = HistoryIs::absolute,
                        StrainMeasure measure = StrainMeasure::logarithmic) {
   PointTest test;
-  test.path = history_path(parse_table(text, "h.csv"), is, measure);
+  test.path = history_path(table_of(text), is, measure);
   test.initial.p = 100e3;
   test.initial.ocr = 1.0;
   test.settings.method = Method::adaptive;
@@ -126,12 +141,6 @@ TEST(History, a_strain_in_per_cent_under_a_plain_name_is_noticed) {
 
 TEST(History, says_what_is_wrong_and_where) {
   const std::string head = "time_s,eps_a,eps_r\n0,0,0\n";
-  EXPECT_NE(message_of(head + "1,nan,0\n")
-                .find("h.csv:3: column eps_a holds \"nan\", and a finite number is needed"),
-            std::string::npos)
-      << message_of(head + "1,nan,0\n");
-  EXPECT_NE(message_of(head + "1,0\n").find("h.csv:3: 2 values, and the header names 3 columns"),
-            std::string::npos);
   EXPECT_NE(message_of(head + "0,0.1,0\n").find("h.csv:3: time_s must grow"), std::string::npos);
   EXPECT_NE(message_of("eps_a,eps_r\n0,0\n").find("column time_s is missing"), std::string::npos);
   EXPECT_NE(message_of("time_s,eps_a\n0,0\n1,0\n").find("six are needed"), std::string::npos);
@@ -142,9 +151,6 @@ TEST(History, says_what_is_wrong_and_where) {
             std::string::npos);
   EXPECT_NE(message_of("time_s,epsa,eps_r\n0,0,0\n1,0,0\n").find("did you mean \"eps_a\"?"),
             std::string::npos);
-  EXPECT_NE(message_of("time_s,eps_a,eps_a\n0,0,0\n").find("appears twice"), std::string::npos);
-  EXPECT_NE(message_of("time_s,eps_a,eps_r\n").find("no rows"), std::string::npos);
-  EXPECT_NE(message_of("").find("names no columns"), std::string::npos);
 }
 
 }  // namespace
