@@ -115,16 +115,21 @@ TEST(ElasticEnergy, OfClay) {
     Scene scene = filled(cam_clay(compression));
     scene.bodies[0].initial.p = p;
     scene.bodies[0].initial.ocr = ocr;
-    const double v = 2000.0 / Simulation(scene, 1).diagnostics().density_min;
     const bool logarithmic = std::string_view(compression) == "ln_v-ln_p";
-    const double compressed = logarithmic ? kappa * p / (1.0 - kappa) : kappa * p / v;
-    EXPECT_NEAR(elastic_at_start(scene), compressed * area, 1e-12 * compressed * area);
-    // q = 0.5 p < M√(p(p_c − p)): within the yield surface, and the volume is that of p and p_c
+    const auto kappa_star = [&] {
+      return logarithmic ? kappa
+                         : kappa / (2000.0 / Simulation(scene, 1).diagnostics().density_min);
+    };
+    const auto compressed = [&] {
+      return logarithmic ? kappa * p / (1.0 - kappa) : kappa_star() * p;
+    };
+    EXPECT_NEAR(elastic_at_start(scene), compressed() * area, 1e-12 * compressed() * area);
+    // q = 0.5 p lies within the yield surface, q < Mp√(p_c/p − 1)
     const double tau = 0.5 * p / std::sqrt(3.0);
     scene.bodies[0].initial.p.reset();
     scene.bodies[0].initial.sigma = {p, p, p, tau, 0.0, 0.0};
-    const double G = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu) * p / (logarithmic ? kappa : kappa / v);
-    const double expected = (compressed + 3.0 * tau * tau / (6.0 * G)) * area;
+    const double G = 1.5 * (1.0 - 2.0 * nu) / (1.0 + nu) * p / kappa_star();
+    const double expected = (compressed() + 3.0 * tau * tau / (6.0 * G)) * area;
     EXPECT_NEAR(elastic_at_start(scene), expected, 1e-12 * expected) << compression;
   }
 }

@@ -104,7 +104,8 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
   bool measured = false;
   const auto candidates = candidates_for(scene, Quantity::kinetic, measured);
   const auto used = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-    return mpm::name_of(c.kernel) == s["kernel"] && mpm::name_of(c.transfer) == s["transfer"] &&
+    return mpm::name_of(c.kernel) == s["kernel"].get<std::string>() &&
+           mpm::name_of(c.transfer) == s["transfer"].get<std::string>() &&
            c.courant == s["courant"];
   });
   ASSERT_NE(used, candidates.end());
