@@ -229,8 +229,9 @@ TEST_F(ChartMpm, AQuickChart) {
 // What lies there is kept if the same solver made it, and only then. A figure that no run gives
 // tells which it was.
 TEST_F(ChartMpm, RunsOfAnotherSolverAreRepeated) {
-  input::InputFile file = input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml",
-                                   std::vector<std::string>{"grid.h=0.05", "scene.end_time=0.01"});
+  input::InputFile file =
+      input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml",
+                             std::vector<std::string>{"grid.h=0.05", "scene.end_time=0.01"});
   const input::SceneFile scene = input::read_scene(file);
   const auto front = [&] {
     study::SweepRun run = study::run_of(scene, scene.scene);

@@ -123,8 +123,8 @@ TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
   // order of sums.
   const auto figures = [&](const char* h, double mu) {
     input::CollapseExperiment with = e;
-    input::InputFile cells = input::InputFile::read(folder / "scene.toml",
-                                      std::vector<std::string>{std::string("grid.h=") + h});
+    input::InputFile cells = input::InputFile::read(
+        folder / "scene.toml", std::vector<std::string>{std::string("grid.h=") + h});
     with.scene = input::read_scene(cells);
     const auto simulated = input::make_collapse_simulator(with);
     std::vector<double> theta = truth;
@@ -176,8 +176,8 @@ TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
 TEST(CollapseCache, TellsRunsApart) {
   const ScratchFolder scratch;
   std::ofstream(scratch.path() / "scene.toml") << scene_text;
-  input::InputFile file =
-      input::InputFile::read(scratch.path() / "scene.toml", std::vector<std::string>{"grid.h=0.05"});
+  input::InputFile file = input::InputFile::read(scratch.path() / "scene.toml",
+                                                 std::vector<std::string>{"grid.h=0.05"});
   input::CollapseExperiment usual;
   usual.scene = input::read_scene(file);
   usual.law = usual.scene.scene.bodies[0].law;
