@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "app/command_line.hpp"
+#include "repose_version.hpp"
 #include "study/accuracy/sweep.hpp"
 #include "tests/app/csv_table.hpp"
 #include "tests/scratch_folder.hpp"
@@ -223,6 +224,32 @@ TEST_F(ChartMpm, AQuickChart) {
   again.insert(again.end(), {"--set", "scene.gravity=4.9"});
   ASSERT_EQ(run(again, "a"), 0) << error_;
   EXPECT_NE(table_of(base_ / "a/chart.csv")[0].at("front_m"), chart[0].at("front_m"));
+}
+
+// What lies there is kept if the same solver made it, and only then. A figure that no run gives
+// tells which it was.
+TEST_F(ChartMpm, RunsOfAnotherSolverAreRepeated) {
+  input::InputFile file =
+      input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml",
+                             std::vector<std::string>{"grid.h=0.05", "scene.end_time=0.01"});
+  const input::SceneFile scene = input::read_scene(file);
+  const auto front = [&] {
+    study::SweepRun run = study::run_of(scene, scene.scene);
+    EXPECT_EQ(study::carry_out(run, base_, 1, false), io::ExitCode::done);
+    return run.figure("front_m");
+  };
+  const double first = front();
+  const fs::path folder = base_ / study::run_of(scene, scene.scene).scene().name;
+  nlohmann::json marked = nlohmann::json::parse(content_of(folder / "summary.json"));
+  marked["front_m"] = 123.0;
+  std::ofstream(folder / "summary.json") << marked;
+  EXPECT_EQ(front(), 123.0) << "it is not repeated";
+  std::string input = content_of(folder / "input.toml");
+  const std::size_t digest = input.find(solver_digest);
+  ASSERT_NE(digest, std::string::npos) << input;
+  input[digest] = input[digest] == '0' ? '1' : '0';
+  std::ofstream(folder / "input.toml") << input;
+  EXPECT_EQ(front(), first);
 }
 
 // A step of 5 ms is three times h/c for cells of 25 mm: that run fails and is kept as such.

@@ -123,7 +123,11 @@ TEST(Differences, name_the_key_and_both_values) {
   EXPECT_TRUE(differences(a, a).empty());
   const std::vector<std::string> absent{"body[0].size[0]: 1 there, nothing here",
                                         "body[0].size[1]: 2 there, nothing here"};
-  EXPECT_EQ(differences(a, toml::parse("[grid]\nh = 0.1\nk = 1\n")), absent);
+  const toml::table less = toml::parse("[grid]\nh = 0.1\nk = 1\n");
+  EXPECT_EQ(differences(a, less), absent);
+  const std::vector<std::string> added{"body[0].size[0]: nothing there, 1 here",
+                                       "body[0].size[1]: nothing there, 2 here"};
+  EXPECT_EQ(differences(less, a), added);
 }
 
 }  // namespace

@@ -136,6 +136,57 @@ TEST_P(LawParameters, OutOfRangeSaysTheRangeAndUnit) {
   }
 }
 
+/// "7 [1, 20]": the default, if there is one, and the range.
+std::string default_and_range(const LawInfo& law, std::string_view name) {
+  for (const ParamInfo& info : law.parameters)
+    if (info.name == name)
+      return (info.need == Need::defaulted  ? text_of(info.value) + " "
+              : info.need == Need::optional ? "optional "
+                                            : "") +
+             to_string(info.range);
+  return "absent";
+}
+
+// Written down a second time: a table alone cannot tell that one of its numbers has changed, and
+// finished results depend on every default.
+TEST(LawDefaults, AndRangesAreThose) {
+  const std::map<std::string, std::map<std::string, std::string>> expected{
+      {"modified_cam_clay",
+       {{"M", "(0, 3)"},
+        {"lambda", "> 0"},
+        {"kappa", "> 0"},
+        {"nu", "[0, 0.5)"},
+        {"Gamma", "optional > 1"},
+        {"N", "optional > 1"},
+        {"p_ref", "1000 > 0"},
+        {"rho_p", "2650 > 0"},
+        {"p_sep", "0.01 > 0"},
+        {"p_shift", "0 >= 0"}}},
+      {"mu_i",
+       {{"mu_0", "> 0"},
+        {"mu_d", "> 0"},
+        {"I_0", "> 0"},
+        {"d", "> 0"},
+        {"rho_p", "> 0"},
+        {"rho_0", "> 0"},
+        {"K", "> 0"},
+        {"G", "optional > 0"},
+        {"r", "0.0001 > 0"},
+        {"alpha", "1.9 > 0"},
+        {"mu_inf", "0.05 >= 0"},
+        {"I_1", "optional > 0"}}},
+      {"newtonian", {{"eta", ">= 0"}, {"K", "> 0"}, {"alpha", "7 [1, 20]"}, {"rho_0", "> 0"}}},
+      {"neo_hookean", {{"E", "> 0"}, {"nu", "[0, 0.5)"}, {"rho_0", "> 0"}}}};
+  for (const LawInfo& law : all_laws())
+    for (const ParamInfo& info : law.parameters) {
+      const auto& of_law = expected.at(std::string(law.name));
+      const auto found = of_law.find(std::string(info.name));
+      ASSERT_NE(found, of_law.end()) << law.name << ": " << info.name;
+      EXPECT_EQ(default_and_range(law, info.name), found->second)
+          << law.name << " " << law.option << ": " << info.name;
+    }
+}
+
 TEST(Range, ToText) {
   EXPECT_EQ(to_string(positive), "> 0");
   EXPECT_EQ(to_string(not_negative), ">= 0");

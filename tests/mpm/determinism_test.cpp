@@ -92,7 +92,26 @@ TEST_P(DeterminismTest, StoppedAndResumed) {
   }
   EXPECT_GT(straight.diagnostics().outflow_kg_per_m, 1.0);
   const SavedState end = saved_state(straight);
-  for (const auto& one : resumed) EXPECT_EQ(saved_state(*one), end);
+  const SeriesRow row = straight.diagnostics();
+  const Simulation::Counters count = straight.counters();
+  for (const auto& one : resumed) {
+    EXPECT_EQ(saved_state(*one), end);
+    // what a checkpoint lacks, two of them cannot differ in
+    const SeriesRow its = one->diagnostics();
+    EXPECT_EQ(its.dissipated_J_per_m, row.dissipated_J_per_m);
+    EXPECT_EQ(its.transfer_loss_J_per_m, row.transfer_loss_J_per_m);
+    EXPECT_EQ(its.wall_loss_J_per_m, row.wall_loss_J_per_m);
+    EXPECT_EQ(its.energy_residual_J_per_m, row.energy_residual_J_per_m);
+    EXPECT_EQ(its.outflow_kg_per_m, row.outflow_kg_per_m);
+    EXPECT_EQ(its.dt_s, row.dt_s);
+    EXPECT_EQ(one->time(), straight.time());
+    EXPECT_EQ(one->next_dt(), straight.next_dt());
+    EXPECT_EQ(one->point_steps(), straight.point_steps());
+    EXPECT_EQ(one->counters().dt_min_s, count.dt_min_s);
+    EXPECT_EQ(one->counters().dt_max_s, count.dt_max_s);
+    EXPECT_EQ(one->counters().sorts, count.sorts);
+    EXPECT_EQ(one->counters().wall_corrections, count.wall_corrections);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(

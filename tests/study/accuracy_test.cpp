@@ -11,6 +11,7 @@
 #include "app/command_line.hpp"
 #include "study/accuracy/accuracy_table.hpp"
 #include "study/accuracy/errors.hpp"
+#include "tests/app/csv_table.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::study {
@@ -41,6 +42,14 @@ class Accuracy : public testing::Test {
   }
   nlohmann::json summary(const std::string& out) const {
     return nlohmann::json::parse(content_of(base_ / out / "summary.json"));
+  }
+
+  /// Kinetic energy over time of a run or an estimate.
+  Eigen::VectorXd kinetic(const fs::path& table) const {
+    std::vector<double> values;
+    for (const auto& row : app::table_of(base_ / table))
+      values.push_back(std::stod(row.at("kinetic_J_per_m")));
+    return Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   }
 
   const std::string scene_ = REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i.toml";
@@ -79,6 +88,53 @@ TEST_F(Accuracy, RunsCoarseAndFineAndGivesAnErrorBar) {
   ASSERT_EQ(run(again, "b"), 0) << error_;
   EXPECT_EQ(summary("b")["cpu_s"], s["cpu_s"]) << "the same seconds, so the same runs";
   EXPECT_EQ(content_of(base_ / "b/estimate.csv"), content_of(base_ / "a/estimate.csv"));
+}
+
+// That a target is met is what ends the runs. Whether it is met, only finer runs can tell; and what
+// is written must be what the runs in the folder give.
+TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
+  ASSERT_EQ(
+      run({"run", scene_, "--accuracy", "0.1", "--for", "kinetic", "--set", "scene.end_time=0.2"},
+          "a"),
+      0)
+      << error_;
+  const nlohmann::json s = summary("a");
+  input::InputFile file = input::InputFile::read(scene_);
+  const mpm::Scene scene = input::read_scene(file).scene;
+  bool measured = false;
+  const auto candidates = candidates_for(scene, Quantity::kinetic, measured);
+  const auto used = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+    return mpm::name_of(c.kernel) == s["kernel"].get<std::string>() &&
+           mpm::name_of(c.transfer) == s["transfer"].get<std::string>() &&
+           c.courant == s["courant"];
+  });
+  ASSERT_NE(used, candidates.end());
+  Convergence again(used->model, std::sqrt(0.2 * 0.4));
+  for (const auto& level : s["runs"])
+    again.add(level["h_m"],
+              kinetic(fs::path("a/runs") / level["run"].get<std::string>() / "series.csv"));
+  const Estimate expected = again.estimate();
+  // sums of some 500 products that are scaled by another interval: 500 eps
+  EXPECT_NEAR(s["error_bar"].get<double>(), expected.error, 1e-12);
+  const Eigen::VectorXd estimate = kinetic("a/estimate.csv");
+  ASSERT_EQ(estimate.size(), expected.value.size());
+  EXPECT_LT(relative_distance(estimate, expected.value), 1e-12);
+
+  // Against cells of an eighth of the coarsest, of which the error is an eighth of it at first
+  // order. Nine of ten answers are within 1.5 error bars; and a bar ten times too wide would say
+  // nothing.
+  ASSERT_EQ(run({"run", (base_ / "a/advised.toml").string(), "--set",
+                 fmt::format("grid.h={}", s["runs"][0]["h_m"].get<double>() / 8.0), "--set",
+                 fmt::format("output.series_interval={}",
+                             0.2 / static_cast<double>(estimate.size() - 1))},
+                "fine"),
+            0)
+      << error_;
+  const double off = relative_distance(estimate, kinetic("fine/series.csv"));
+  std::printf("[ measured ] error bar %.3g, off by %.3g, finest h %g m\n",
+              s["error_bar"].get<double>(), off, s["finest_h_m"].get<double>());
+  EXPECT_LT(off, 1.5 * s["error_bar"].get<double>());
+  EXPECT_GT(off, 0.1 * s["error_bar"].get<double>());
 }
 
 TEST_F(Accuracy, RefusesBeforehandWhatTheBudgetDoesNotBuy) {

@@ -67,6 +67,23 @@ TEST(Richardson, TheErrorBarOfAReferenceBoundsScatter) {
   EXPECT_LE(outside, 4);
 }
 
+// What n runs of a size scatter by counts by 1/√n, because their mean is used; and of the three
+// sizes, the two finest, by their weights in u + w(u − u_m), here w = 1: (1 + w)σ/√n and wσ/√n.
+TEST(Richardson, TheErrorBarHasTheScatterOfTheMeans) {
+  std::vector<Resolution> levels;
+  const double apart = 0.02;
+  for (const double h : {0.4, 0.2, 0.1}) {
+    const VectorXd mean = value_at(h, 0.3, 1.0);
+    levels.push_back({h, {}});
+    for (const double to : {-apart, 0.0, 0.0, apart})
+      levels.back().runs.push_back(mean * (1.0 + to));
+  }
+  const Reference reference = extrapolated_reference(levels);
+  // of 4 runs: √(2 apart²/3) for one, half of it for the mean; an order of 1 leaves no other term
+  const double of_mean = 0.5 * apart * std::sqrt(2.0 / 3.0);
+  EXPECT_NEAR(reference.error, std::hypot(0.25 * 0.3 * 0.1, 2.0 * of_mean, of_mean), 1e-9);
+}
+
 const ErrorModel typical{.bias = 1.0, .irregularity = 0.3, .scatter = 0.002};
 
 TEST(ErrorModel, FinerCellsAndMoreRunsAreNeverWorse) {
@@ -137,9 +154,11 @@ TEST(ErrorModel, WhatScattersIsAveraged) {
   Convergence so_far({.bias = 1e-4, .irregularity = 0.3, .scatter = 0.05}, 1.0);
   so_far.add(0.1, VectorXd::Constant(1, 1.05));
   so_far.add(0.05, VectorXd::Constant(1, 0.97));
-  // B ≤ 1e-4·0.05 from the model; the change of 8 % is no more than the scatter of two runs allows
-  // (√2 × 5 %) by 0.0014, so that B² = (0.08² − 2 × 0.05²)/1.4/2 at most: 0.022, x = 2
-  EXPECT_LT(so_far.bias_at(0.05), 0.03);
+  // B is 1e-4 × 0.05 by the model. The change of 0.08/0.97 is no more than two runs of 5 % differ
+  // by, but for the square root of (0.08/0.97)² − 2 × 0.05², in units of what x = 2 tells: 1 + 0.3²
+  // (4 + 1).
+  const double shown = std::sqrt((std::pow(0.08 / 0.97, 2) - 2.0 * 0.05 * 0.05) / 1.45);
+  EXPECT_NEAR(so_far.bias_at(0.05), std::sqrt(1e-4 * 0.05 * shown), 1e-12);
   const Estimate estimate = so_far.estimate();
   EXPECT_GT(estimate.weights[0], 0.0) << "it adds to the mean, nothing is extrapolated";
   EXPECT_GT(estimate.weights[1], 0.5);
@@ -173,6 +192,8 @@ TEST(ErrorModel, PlansBuyTheCheaperOfCellsAndRuns) {
 /// What the decision makes of a quantity: runs are made up until the error bar meets the target.
 struct Answer {
   double error, cost;
+  double bar;         ///< error bar at the end
+  double bar_before;  ///< before the last run; none of less than two sizes
 };
 template <class F>
 Answer answer_for(const F& value, const ErrorModel& model, double target) {
@@ -181,14 +202,16 @@ Answer answer_for(const F& value, const ErrorModel& model, double target) {
     for (const double part : {1.0, 0.8, 2.0 / 3.0}) sizes.push_back(part * h);
   for (const double h : sizes) seconds.push_back(std::pow(0.2 / h, 3));
   Convergence so_far(model, 1.0);
-  double cost = 0.0;
+  double cost = 0.0, bar_before = HUGE_VAL;
   const Outcome outcome =
       run_to_target(so_far, sizes, seconds, target, HUGE_VAL, [&](const Level& next) {
+        if (so_far.levels().size() >= 2) bar_before = so_far.estimate().error;
         cost += std::pow(0.2 / next.h, 3);
         return std::optional(VectorXd::Constant(1, value(next.h)).eval());
       });
   EXPECT_EQ(outcome, Outcome::met);
-  return {std::abs(so_far.estimate().value[0] - 1.0), cost};
+  const Estimate estimate = so_far.estimate();
+  return {std::abs(estimate.value[0] - 1.0), cost, estimate.error, bar_before};
 }
 
 // u = 1 + b h^p: a single run meets the target from h* = (target/b)^(1/p) on and costs (0.2/h*)³.
@@ -205,6 +228,9 @@ TEST(ErrorModel, RegularErrorsAreMetWithinThreeTimesTheCheapestCost) {
         const double cheapest = std::pow(0.2 / std::min(0.2, std::pow(target / b, 1.0 / p)), 3);
         EXPECT_LE(answer.error, 1.5 * target) << p << " " << b << " " << target;
         EXPECT_LE(answer.cost, 3.0 * cheapest) << p << " " << b << " " << target;
+        // what is asked for is met, and no run is made once it is
+        EXPECT_LE(answer.bar, target);
+        EXPECT_GT(answer.bar_before, target);
       }
 }
 
