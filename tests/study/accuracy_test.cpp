@@ -118,7 +118,7 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
   EXPECT_NEAR(s["error_bar"].get<double>(), expected.error, 1e-12);
   const Eigen::VectorXd estimate = kinetic("a/estimate.csv");
   ASSERT_EQ(estimate.size(), expected.value.size());
-  EXPECT_LT(relative_distance(estimate, expected.value), 1e-12);
+  EXPECT_LT(relative_distance(estimate, expected.value), 1e-9) << "ten digits are written";
 
   // Against cells of an eighth of the coarsest, of which the error is an eighth of it at first
   // order. Nine of ten answers are within 1.5 error bars; and a bar ten times too wide would say
@@ -131,8 +131,6 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
             0)
       << error_;
   const double off = relative_distance(estimate, kinetic("fine/series.csv"));
-  std::printf("[ measured ] error bar %.3g, off by %.3g, finest h %g m\n",
-              s["error_bar"].get<double>(), off, s["finest_h_m"].get<double>());
   EXPECT_LT(off, 1.5 * s["error_bar"].get<double>());
   EXPECT_GT(off, 0.1 * s["error_bar"].get<double>());
 }
