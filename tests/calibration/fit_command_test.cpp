@@ -427,7 +427,9 @@ TEST_P(Kaolin, ProfileIntervalsAgreeWithRefitsAtFixedValues) {
       // only within t standard errors of them
       const double room =
           std::min(end - problem.space().reach(i)[0], problem.space().reach(i)[1] - end);
-      if (room > t * u.released_error[k]) EXPECT_NEAR(excess / (t * t), 1.0, 0.01) << up;
+      if (room > t * u.released_error[k]) {
+        EXPECT_NEAR(excess / (t * t), 1.0, 0.01) << up;
+      }
     }
     std::printf("\n");
   }
