@@ -200,7 +200,7 @@ TEST_F(FitCommand, KappaStaysBelowLambdaWhereBoundsOverlap) {
   EXPECT_EQ(file.free[2].upper, 0.15);
   EXPECT_EQ(complaint(replaced(text, "kappa = { lower = 0.02, upper = 0.15",
                                "kappa = { lower = 0.5, upper = 0.6"))
-                .find("bad.toml:8:19: kappa must be less than lambda, but kappa >= 0.5 and lambda "
+                .find("bad.toml:8:11: kappa must be less than lambda, but kappa >= 0.5 and lambda "
                       "<= 0.4 leave no such values"),
             0u);
 }
