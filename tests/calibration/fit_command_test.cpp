@@ -200,7 +200,7 @@ TEST_F(FitCommand, KappaStaysBelowLambdaWhereBoundsOverlap) {
   EXPECT_EQ(file.free[2].upper, 0.15);
   EXPECT_EQ(complaint(replaced(text, "kappa = { lower = 0.02, upper = 0.15",
                                "kappa = { lower = 0.5, upper = 0.6"))
-                .find("bad.toml:8:19: kappa must be less than lambda, but kappa >= 0.5 and lambda "
+                .find("bad.toml:8:11: kappa must be less than lambda, but kappa >= 0.5 and lambda "
                       "<= 0.4 leave no such values"),
             0u);
 }
@@ -427,7 +427,9 @@ TEST_P(Kaolin, ProfileIntervalsAgreeWithRefitsAtFixedValues) {
       // only within t standard errors of them
       const double room =
           std::min(end - problem.space().reach(i)[0], problem.space().reach(i)[1] - end);
-      if (room > t * u.released_error[k]) EXPECT_NEAR(excess / (t * t), 1.0, 0.01) << up;
+      if (room > t * u.released_error[k]) {
+        EXPECT_NEAR(excess / (t * t), 1.0, 0.01) << up;
+      }
     }
     std::printf("\n");
   }
