@@ -1,16 +1,12 @@
 #pragma once
 /// \file
 /// The keys of an input file, each written once: name, unit, range, meaning, default and the
-/// variable that it lands in. A kind of input is a few functions such as
-///
-///   void grid_keys(Keys& keys, mpm::Scene& scene) {
-///     keys.number({"h", "m", "cell size", positive, required}, scene.h);
-///     keys.choice({"kernel", "-", "spline of the grid"}, mpm::kernel_names, scene.kernel);
-///   }
-///
-/// and what `keys` is decides what they do: read a file into the variables (read_keys.hpp), write
-/// the variables out as a file (write_keys.hpp), or tell of the keys themselves (key_info.hpp),
-/// from which the JSON Schema and the reference page are made (schema.hpp).
+/// variable that it lands in. A kind of input is a few functions such as grid_keys() of
+/// read_scene.cpp, with a line for each key:
+/// `keys.number({"h", "m", "cell size", positive, required}, scene.h)`. What `keys` is decides what
+/// they do: read a file into the variables (read_keys.hpp), write the variables out as a file
+/// (write_keys.hpp), or tell of the keys themselves (key_info.hpp), from which the JSON Schema and
+/// the reference page are made (schema.hpp).
 
 #include <array>
 #include <cstdint>

@@ -67,8 +67,8 @@ Stage stage_of(TomlReader& table, const StageTable& given, const PathReading& re
   check_strain(table, "strain_limit", stage.strain_limit, reading);
   for (std::size_t i = 0; i < stop_keys.size(); ++i)
     if (given.stops[i])
-      stage.stops.push_back(
-          goal_of(table, stop_keys[i].key, stop_keys[i], *given.stops[i], reading));
+      stage.stops.push_back(goal_of(table, "stop." + std::string(stop_keys[i].key), stop_keys[i],
+                                    *given.stops[i], reading));
   return stage;
 }
 

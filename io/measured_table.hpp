@@ -1,11 +1,8 @@
 #pragma once
 /// \file
 /// Measured columns in SI units from a table as a laboratory writes it. One reader for all of them:
-///
-///     const RawTable table = load_table("A7.csv");
-///     const MeasuredColumn q = read_column(table, {.name = "q_Pa", .from = "Deviator stress",
-///                                                  .unit = "kPa", .dimension =
-///                                                  dimension::stress});
+/// load_table() and then read_column() with {.name = "q_Pa", .from = "Deviator stress", .unit =
+/// "kPa", .dimension = dimension::stress}.
 
 #include <limits>
 #include <optional>

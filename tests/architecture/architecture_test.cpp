@@ -167,7 +167,10 @@ TEST(House, OnlyTheCommandPrints) {
   std::vector<std::string> found;
   for (const Source& source : sources(read_arrows())) {
     if (lies_in(source.path, "app")) continue;
-    const std::string code = text_of(root / source.path);
+    std::istringstream text(text_of(root / source.path));
+    std::string code;  // without comments: a sample in one may print
+    for (std::string line; std::getline(text, line);)
+      if (line.find("//") != line.find_first_not_of(' ')) code += line + "\n";
     for (const char* const call : {"fmt::print(", "std::printf(", "std::puts(", "std::fputs(",
                                    "std::fprintf(", "std::cout", "std::cerr"})
       if (code.find(call) != std::string::npos) {
