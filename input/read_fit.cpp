@@ -51,6 +51,7 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
   if (fit == nullptr) return overrides;
   const toml::table* law = file.root()["law"].as_table();
   std::vector<std::string> problems;
+  std::map<std::string, double, std::less<>> starts;
   const auto bound = [](const toml::table& t, const char* key) {
     const auto node = t[key];
     return node.is_number() ? *node.value<double>() : std::nan("");
@@ -83,8 +84,14 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
     // only a stand-in that the law accepts: the fit starts where the coordinates say
     if (std::isnan(start) || !(start > lower && start < upper))
       start = lower > 0.0 ? std::sqrt(lower * upper) : 0.5 * (lower + upper);
-    if (std::isfinite(start * of)) overrides.push_back(fmt::format("law.{}={}", name, start * of));
+    if (std::isfinite(start * of)) starts[name] = start * of;
   }
+  // in the order that the laws demand; whether the bounds leave room for it, link_ratios() tells
+  for (const auto& [small, large] : {std::pair{"kappa", "lambda"}, {"mu_0", "mu_d"}})
+    if (starts.contains(small) && starts.contains(large) && starts[small] >= starts[large])
+      starts[small] = 0.5 * starts[large];
+  for (const auto& [name, start] : starts)
+    overrides.push_back(fmt::format("law.{}={}", name, start));
   if (!problems.empty()) throw BadInput(std::move(problems));
   return overrides;
 }
