@@ -1,8 +1,7 @@
 #include <chrono>
 #include <cmath>
 
-#include <Eigen/QR>
-
+#include "calibration/dense.hpp"
 #include "calibration/optimise.hpp"
 
 namespace repose::calibration {
@@ -44,7 +43,7 @@ VectorXd damped_step(const MatrixXd& J, const VectorXd& r, const VectorXd& scale
       A.col(j).head(J.rows()) = J.col(k);
       A(J.rows() + j, j) = std::sqrt(mu) * scale[k];
     }
-    const VectorXd d = A.colPivHouseholderQr().solve(b);
+    const VectorXd d = least_squares(A, b);
     std::vector<Index> inside;
     for (Index j = 0; j < n; ++j) {
       const Index k = free[static_cast<std::size_t>(j)];

@@ -106,8 +106,8 @@ bool together(const ChannelNoise& a, const ChannelNoise& b) {
 /// h made positive definite where pairs estimated one by one contradict each other.
 void mend(MatrixXd& h) {
   for (int k = 0; k < 60; ++k) {
-    const Eigen::LLT<MatrixXd> root(h - 1e-6 * MatrixXd::Identity(h.rows(), h.cols()));
-    if (root.info() == Eigen::Success) return;
+    const Eigen::LDLT<MatrixXd> root(h - 1e-6 * MatrixXd::Identity(h.rows(), h.cols()));
+    if (root.info() == Eigen::Success && root.vectorD().minCoeff() > 0.0) return;
     const VectorXd diagonal = h.diagonal();
     h *= 0.95;
     h.diagonal() = diagonal;

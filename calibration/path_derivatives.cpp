@@ -1,6 +1,6 @@
 #include "calibration/path_derivatives.hpp"
 
-#include "models/all_laws.hpp"
+#include "pointdriver/integrate/library_drives.hpp"
 #include "pointdriver/integrate/outside_driver.hpp"
 #include "pointdriver/integrate/plain_rows.hpp"
 #include "pointdriver/integrate/start.hpp"
@@ -10,17 +10,29 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int width = 6;  ///< derivatives carried at a time
-using D = Dual<width>;
+constexpr int width = point::gradient_width;
+using D = point::Gradient;
 
-/// What a law of the library is driven by: its type. Numbers, here and below, are all that a path
-/// starts from: completed parameters, stress and state, density.
-template <class L>
-struct LibraryDrive {
-  std::size_t parameters() const { return L::parameters.size(); }
-
+/// Drives a law. Numbers, here and below, are all that a path starts from: completed parameters,
+/// stress and state, density.
+struct Drive {
+  virtual ~Drive() = default;
+  virtual std::size_t parameters() const = 0;
   /// Throws InputError.
-  std::vector<double> start(std::span<const double> theta, const point::PointTest& test) const {
+  virtual std::vector<double> start(std::span<const double> theta,
+                                    const point::PointTest& test) const = 0;
+  virtual point::Outcome drive(std::span<const D> numbers, std::span<const double> plain,
+                               const point::PointTest& test, point::BasicCurve<D>& curve,
+                               point::Readout<D>& readout) const = 0;
+};
+
+/// A law of the library, by its type.
+template <class L>
+struct LibraryDrive final : Drive {
+  std::size_t parameters() const override { return L::parameters.size(); }
+
+  std::vector<double> start(std::span<const double> theta,
+                            const point::PointTest& test) const override {
     std::vector<double> numbers = point::completed<L>(theta);
     const auto start = point::plain_start<L>(std::span<const double>(numbers), test);
     numbers.insert(numbers.end(), start.stress_and_state.begin(), start.stress_and_state.end());
@@ -30,7 +42,7 @@ struct LibraryDrive {
 
   point::Outcome drive(std::span<const D> numbers, std::span<const double> plain,
                        const point::PointTest& test, point::BasicCurve<D>& curve,
-                       point::Readout<D>& readout) const {
+                       point::Readout<D>& readout) const override {
     constexpr std::size_t n = L::parameters.size();
     point::ElementStart<L, D> start;
     start.plain = L::template Params<double>::from(plain.first(n));
@@ -45,17 +57,19 @@ struct LibraryDrive {
 };
 
 /// The same of a law from outside, through plain numbers.
-struct OutsideDrive {
+struct OutsideDrive final : Drive {
+  explicit OutsideDrive(const LawInfo& info) : law(info), driver(point::outside_driver(info)) {}
   const LawInfo& law;
   const point::OutsideDriver& driver;
 
-  std::size_t parameters() const { return law.parameters.size(); }
-  std::vector<double> start(std::span<const double> theta, const point::PointTest& test) const {
+  std::size_t parameters() const override { return law.parameters.size(); }
+  std::vector<double> start(std::span<const double> theta,
+                            const point::PointTest& test) const override {
     return driver.start(theta, test);
   }
   point::Outcome drive(std::span<const D> numbers, std::span<const double> plain,
                        const point::PointTest& test, point::BasicCurve<D>& curve,
-                       point::Readout<D>& readout) const {
+                       point::Readout<D>& readout) const override {
     static_assert(width == point::OutsideDriver::slope_width);
     std::vector<double> slopes;
     for (int k = 0; k < width; ++k)
@@ -76,8 +90,7 @@ struct OutsideDrive {
   }
 };
 
-template <class Law>
-bool start_numbers(const Law& law, const InitialConditions& fixed, std::span<const double> inputs,
+bool start_numbers(const Drive& law, const InitialConditions& fixed, std::span<const double> inputs,
                    std::vector<double>& out) {
   try {
     const PointInputs in = split_inputs(law.parameters(), fixed, inputs);
@@ -92,8 +105,7 @@ bool start_numbers(const Law& law, const InitialConditions& fixed, std::span<con
 
 /// d(start numbers)/d(input i): central, or one-sided of second order where one side is not
 /// admissible (ocr = 1).
-template <class Law>
-bool start_slope(const Law& law, const InitialConditions& fixed, std::span<const double> inputs,
+bool start_slope(const Drive& law, const InitialConditions& fixed, std::span<const double> inputs,
                  int i, const std::vector<double>& here, std::vector<double>& slope) {
   std::vector<double> moved(inputs.begin(), inputs.end()), a, b;
   double& x = moved[static_cast<std::size_t>(i)];
@@ -116,11 +128,10 @@ bool start_slope(const Law& law, const InitialConditions& fixed, std::span<const
   return true;
 }
 
-template <class Law>
-point::Outcome drive(const Law& law, const InitialConditions& fixed, std::span<const double> inputs,
-                     std::span<const int> wanted, const point::PointTest& test,
-                     std::span<const point::Quantity> quantities, std::vector<Column>& columns,
-                     std::vector<int>& legs) {
+point::Outcome drive(const Drive& law, const InitialConditions& fixed,
+                     std::span<const double> inputs, std::span<const int> wanted,
+                     const point::PointTest& test, std::span<const point::Quantity> quantities,
+                     std::vector<Column>& columns, std::vector<int>& legs) {
   const std::size_t n_theta = law.parameters();
   point::Outcome outcome;
   outcome.status = point::Status::bad_initial;
@@ -187,7 +198,7 @@ point::Outcome simulate_with_derivatives(const LawInfo& law, const InitialCondit
     column.slope.resize(0, 0);
   }
   legs.clear();
-  const auto in_passes = [&](const auto& driven) {
+  const auto in_passes = [&](const Drive& driven) {
     std::vector<Column> part;
     point::Outcome outcome;
     // the steps are chosen by values alone, so every pass takes the same ones
@@ -209,9 +220,7 @@ point::Outcome simulate_with_derivatives(const LawInfo& law, const InitialCondit
   };
   return visit_law(
       law, [&]<class L>(L) { return in_passes(LibraryDrive<L>{}); },
-      [&] {
-        return in_passes(OutsideDrive{law, point::outside_driver(law)});
-      });
+      [&] { return in_passes(OutsideDrive(law)); });
 }
 
 }  // namespace repose::calibration

@@ -4,6 +4,8 @@
 
 namespace repose::calibration {
 
+double Evaluation::objective() const { return 0.5 * r.squaredNorm(); }
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;

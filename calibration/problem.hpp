@@ -19,7 +19,7 @@ struct Evaluation {
   Eigen::VectorXd r;
   Eigen::MatrixXd J;    ///< empty unless asked for
   bool failed = false;  ///< a path broke off; r is finite all the same
-  double objective() const { return 0.5 * r.squaredNorm(); }
+  double objective() const;  ///< ½ r·r, from one place: to the same last bit for everybody
 };
 
 /// What was spent. Counted over all threads.

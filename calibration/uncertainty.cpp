@@ -4,8 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include "calibration/dense.hpp"
 
 namespace repose::calibration {
 namespace {
@@ -136,13 +135,13 @@ Linear linearised(const MatrixXd& J, const std::vector<Index>& columns, double s
   for (Index j = 0; j < m; ++j) A.col(j) = J.col(columns[static_cast<std::size_t>(j)]);
   // z runs over the bounds: a singular value is what a walk across all of them does to r. What
   // lies below 1e-8 of the largest are the last digits of the path.
-  const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const VectorXd& s = svd.singularValues();
+  const SingularValues svd = singular_values(A);
+  const VectorXd& s = svd.s;
   const double limit = std::max({0.1 * scatter, 1e-8 * s[0], 1e-280});
   Index rank = 0;
   while (rank < s.size() && s[rank] > limit) ++rank;
-  l.U = svd.matrixU().leftCols(rank);
-  const MatrixXd V = svd.matrixV();
+  l.U = svd.U.leftCols(rank);
+  const MatrixXd& V = svd.V;
   const MatrixXd part = V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
   const MatrixXd pseudo = part * l.U.transpose(), inverse = part * part.transpose();
   for (Index i = 0; i < m; ++i) {
@@ -332,22 +331,20 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
   if (m > 0) {
     MatrixXd relative(e.J.rows(), m);
     // value_i moves with its own coordinate and with those it is a ratio to: invert the map
-    const MatrixXd inverse = slopes.fullPivLu().inverse();
-    const MatrixXd by_value = e.J * inverse;
+    const MatrixXd by_value = e.J * inverse(slopes);
     for (Index j = 0; j < m; ++j) {
       const Index i = inside[static_cast<std::size_t>(j)];
       relative.col(j) = by_value.col(i) * std::abs(u.values[i]);
     }
     relative /= std::max(std::sqrt(u.noise.mean_variance()), 1e-300);
-    const Eigen::JacobiSVD<MatrixXd> svd(relative, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    for (Index k = svd.singularValues().size() - 1; k >= 0; --k) {
+    const SingularValues svd = singular_values(relative);
+    for (Index k = svd.s.size() - 1; k >= 0; --k) {
       Combination c;
-      c.singular_value = svd.singularValues()[k];
-      const bool none = c.singular_value <= 1e-9 * svd.singularValues()[0];
+      c.singular_value = svd.s[k];
+      const bool none = c.singular_value <= 1e-9 * svd.s[0];
       c.relative_sd = none ? infinity : 1.0 / c.singular_value;
       c.direction = VectorXd::Zero(n);
-      for (Index j = 0; j < m; ++j)
-        c.direction[inside[static_cast<std::size_t>(j)]] = svd.matrixV()(j, k);
+      for (Index j = 0; j < m; ++j) c.direction[inside[static_cast<std::size_t>(j)]] = svd.V(j, k);
       c.words = in_words(space, c.direction, c.relative_sd);
       u.combinations.push_back(std::move(c));
     }

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 
 #include "mpm/grid/points.hpp"
 
@@ -97,9 +98,17 @@ std::array<double, 2> local_mean(const Strips& strips, double x, double y, doubl
     A += weight * basis * basis.transpose();
     b += weight * basis * Eigen::RowVector2d(q.pressure, q.vertical);
   });
-  // fewer than three neighbours, or all in a line: the fit of least norm
-  const Eigen::Matrix<double, 3, 2> fit = A.completeOrthogonalDecomposition().solve(b);
-  return {fit(0, 0), fit(0, 1)};
+  // fewer than three neighbours, or all in a line: the fit of least norm, by A's eigenvectors
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(A);
+  const Eigen::Vector3d& size = eigen.eigenvalues();
+  Eigen::RowVector2d mean = Eigen::RowVector2d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d along = eigen.eigenvectors().col(i);
+    // what three sums of round-off leave of a zero
+    if (size[i] > 10.0 * std::numeric_limits<double>::epsilon() * size[2])
+      mean += along[0] / size[i] * (along.transpose() * b);
+  }
+  return {mean[0], mean[1]};
 }
 
 /// Sums of squares on their way to a Deviation.

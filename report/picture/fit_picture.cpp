@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/LU>
-#include <fmt/format.h>
+#include <fmt/core.h>
+
+#include "calibration/dense.hpp"
 
 namespace repose::report {
 namespace {
@@ -41,7 +42,7 @@ MatrixXd prediction_sd(const calibration::Problem& problem, const study::FitResu
   const VectorXd z = result.best().z;
   const MatrixXd at = problem.predict(target, z).simulated;
   const auto n = z.size();
-  const MatrixXd inverse = problem.space().slopes(z).partialPivLu().inverse();
+  const MatrixXd inverse = calibration::inverse(problem.space().slopes(z));
   VectorXd se(n);
   for (Index i = 0; i < n; ++i)
     se[i] = std::isfinite(u.standard_error[i]) ? u.standard_error[i] : 0.0;
