@@ -81,6 +81,12 @@ template <class T, int N>
   return normal + T(2.0) * shear;
 }
 
+/// √(a:a)
+template <int N>
+double norm(const Sym<double, N>& a) {
+  return std::sqrt(contract(a, a));
+}
+
 /// p = −tr(σ)/3, compression positive.
 template <class T, int N>
 T pressure(const Sym<T, N>& stress) {

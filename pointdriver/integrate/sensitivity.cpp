@@ -1,8 +1,8 @@
 #include "pointdriver/integrate/sensitivity.hpp"
 
-#include "models/all_laws.hpp"
 #include "pointdriver/integrate/dual_start.hpp"
 #include "pointdriver/integrate/gradient.hpp"
+#include "pointdriver/integrate/library_drives.hpp"
 #include "pointdriver/integrate/outside_driver.hpp"
 #include "pointdriver/integrate/plain_rows.hpp"
 

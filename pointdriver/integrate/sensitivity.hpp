@@ -18,7 +18,7 @@
 namespace repose::point {
 
 /// Parameters differentiated in one pass.
-inline constexpr int gradient_width = 4;
+inline constexpr int gradient_width = 6;
 using Gradient = Dual<gradient_width>;
 using GradientCurve = BasicCurve<Gradient>;
 

@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "models/all_laws.hpp"
+#include "pointdriver/integrate/library_drives.hpp"
 #include "pointdriver/integrate/outside_driver.hpp"
 #include "pointdriver/integrate/start.hpp"
 

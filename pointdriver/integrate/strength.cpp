@@ -8,8 +8,6 @@ namespace {
 constexpr std::array<double, 6> none{};
 constexpr double strain_rate_if_none = 1e-4;  // 1/s
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// The six rows of a leg with one strain in place of the stress that drives it.
 struct StrainDriven {
   std::array<Constraint, 6> rows{};

@@ -8,8 +8,6 @@
 namespace repose::point {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 /// user sign → tension positive: normal components turn round
 double sign(int component) { return component < 3 ? -1.0 : 1.0; }
 

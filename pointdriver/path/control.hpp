@@ -27,6 +27,9 @@ struct Constraint {
 inline constexpr std::array<const char*, 6> component_names{"xx", "yy", "zz", "xy", "yz", "zx"};
 int component_index(const std::string& name);
 
+/// A component as a subscript.
+inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 /// Rows most tests are made of. The control is prepared for the law in Control.
 Constraint strain_rate(int component, double rate);
 Constraint stress_rate(int component, double rate);
@@ -84,7 +87,6 @@ class Control {
 template <class T>
 bool solve_small(int n, std::array<std::array<T, 6>, 6>& a, std::array<T, 6>& b) {
   using std::abs;
-  const auto at = [](int i) { return static_cast<std::size_t>(i); };
   std::array<double, 6> scale{};
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j)

@@ -31,13 +31,13 @@ class Points {
   /// L = ∇U + (a_x, a_y)⊗(k_x, k_y) for a time dt; padding follows the last point.
   void set_gradient(std::size_t i, double shear_rate, double ax, double ay, double kx, double ky,
                     double dt) {
-    const double xx = ax * kx, xy = shear_rate + ax * ky, yx = ay * kx, yy = ay * ky;
+    const double L_xx = ax * kx, L_xy = shear_rate + ax * ky, L_yx = ay * kx, L_yy = ay * ky;
     const std::size_t end = i + 1 == count_ ? padded(count_) : i + 1;
     for (std::size_t s = i; s < end; ++s) {
-      strain_[0][s] = dt * xx;
-      strain_[1][s] = dt * yy;
-      strain_[3][s] = 0.5 * dt * (xy + yx);
-      spin_[s] = 0.5 * dt * (yx - xy);
+      strain_[0][s] = dt * L_xx;
+      strain_[1][s] = dt * L_yy;
+      strain_[3][s] = 0.5 * dt * (L_xy + L_yx);
+      spin_[s] = 0.5 * dt * (L_yx - L_xy);
     }
   }
 
@@ -115,9 +115,9 @@ void accelerate(Wave& w, const Points& points, std::size_t i, std::size_t undist
   const auto excess = [&](std::size_t c) {
     return points.stress(c, i) - points.stress(c, undisturbed);
   };
-  const double xx = excess(0), yy = excess(1), xy = excess(3), vy = w.vy;
-  w.vx -= dt * ((xx * w.kx + xy * w.ky) / rho + flow.shear_rate * vy);
-  w.vy -= dt * (xy * w.kx + yy * w.ky) / rho;
+  const double s_xx = excess(0), s_yy = excess(1), s_xy = excess(3), vy = w.vy;
+  w.vx -= dt * ((s_xx * w.kx + s_xy * w.ky) / rho + flow.shear_rate * vy);
+  w.vy -= dt * (s_xy * w.kx + s_yy * w.ky) / rho;
 }
 
 void strain(Points& points, std::size_t i, const Wave& w, const ShearFlow& flow, double dt) {

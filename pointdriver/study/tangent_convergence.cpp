@@ -47,8 +47,6 @@ std::vector<Case> cases() {
   return list;
 }
 
-double norm(const Sym<double, 6>& a) { return std::sqrt(contract(a, a)); }
-
 template <class L>
 TangentTest test_of(const Case& c) {
   using D = Dual<6>;

@@ -37,8 +37,6 @@ double clock_seconds() {
   return duration<double>(steady_clock::now().time_since_epoch()).count();
 }
 
-double norm(const Sym<double, 6>& a) { return std::sqrt(contract(a, a)); }
-
 /// Quantities of a row beside its stress: each is compared over its largest in the reference.
 constexpr std::size_t others = max_state + 7;
 std::array<double, others> others_of(const Row<double>& row) {
