@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "input/resolved_scene.hpp"
+#include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/accuracy_picture.hpp"
@@ -15,7 +15,7 @@
 namespace repose::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 using study::AccurateRun;
 
 /// 2 significant digits: "about" figures must not look exact.

@@ -6,11 +6,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/command.hpp"
 #include "input/input_file.hpp"
 #include "io/atomic_file.hpp"
+#include "io/json.hpp"
 #include "repose_version.hpp"
 
 namespace repose::app {
@@ -33,10 +33,10 @@ constexpr const char* examples =
 io::ExitCode complain(io::ExitCode code, const std::vector<std::string>& messages, bool json) {
   for (const std::string& message : messages) fmt::print(stderr, "{}\n", message);
   if (json)
-    fmt::print("{}\n",
-               nlohmann::ordered_json{
-                   {"event", "error"}, {"messages", messages}, {"exit", static_cast<int>(code)}}
-                   .dump());
+    fmt::print(
+        "{}\n",
+        io::Json{{"event", "error"}, {"messages", messages}, {"exit", static_cast<int>(code)}}
+            .dump());
   return code;
 }
 

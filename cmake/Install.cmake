@@ -17,6 +17,7 @@ set(repose_public_headers
   io/csv_columns.hpp
   io/frame_reader.hpp
   io/frame_writer.hpp
+  io/json.hpp
   io/vtkhdf.hpp
   models/ill_posedness.hpp
   models/law.hpp
@@ -68,9 +69,6 @@ set(repose_law_headers
 # objects of its static one.
 function(repose_export room name)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "NEEDS;LIBS")
-  set_target_properties(${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  # calls inside the library are what they are in a program: they may be inlined
-  target_compile_options(${room} PRIVATE -fno-semantic-interposition)
   add_library(${room}_shared SHARED $<TARGET_OBJECTS:${room}>)
   set_target_properties(${room}_shared PROPERTIES
     LINKER_LANGUAGE CXX

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <fstream>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "input/resolved_scene.hpp"
 #include "io/atomic_file.hpp"
 #include "io/fingerprint.hpp"
+#include "io/json.hpp"
 #include "mpm/step/simulation.hpp"
 
 namespace repose::input {
@@ -114,7 +114,7 @@ class CollapseSimulator final : public calibration::Simulator {
   /// The whole key is kept beside the answer: a hash alone could collide.
   static void keep(const std::filesystem::path& file, const std::string& key, const Response& r) {
     if (!r.complete()) return;
-    nlohmann::json j;
+    io::Json j;
     j["input"] = key;
     j["x"] = std::vector<double>(r.x.begin(), r.x.end());
     for (Index c = 0; c < r.y.cols(); ++c)
@@ -125,10 +125,10 @@ class CollapseSimulator final : public calibration::Simulator {
   static bool recall(const std::filesystem::path& file, const std::string& key, Response& r) {
     std::ifstream in(file);
     if (!in) return false;
-    const nlohmann::json j = nlohmann::json::parse(in, nullptr, false);
-    if (j.is_discarded() || j.value("input", "") != key) return false;
-    const auto x = j.at("x").get<std::vector<double>>();
-    const auto y = j.at("y").get<std::vector<std::vector<double>>>();
+    const auto j = io::Json::try_parse(std::string(std::istreambuf_iterator<char>(in), {}));
+    if (!j || j->value("input", "") != key) return false;
+    const auto x = j->at("x").get<std::vector<double>>();
+    const auto y = j->at("y").get<std::vector<std::vector<double>>>();
     r.x = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Index>(x.size()));
     r.y.resize(r.x.size(), static_cast<Index>(y.size()));
     for (std::size_t c = 0; c < y.size(); ++c)

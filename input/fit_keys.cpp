@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/key_info.hpp"
 #include "input/measured_columns.hpp"

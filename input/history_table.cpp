@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/measured_columns.hpp"
 #include "io/column_header.hpp"

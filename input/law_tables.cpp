@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "input/input_file.hpp"
+#include "io/json.hpp"
 #include "models/registry.hpp"
 
 namespace repose::input {
@@ -114,7 +114,7 @@ std::string law_description(std::string_view name) {
 }
 
 std::string laws_as_json(std::string_view name) {
-  using Json = nlohmann::ordered_json;
+  using Json = io::Json;
   const auto finite = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
   Json laws = Json::array();
   for (const LawInfo* info : forms_of(name)) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/key_info.hpp"
 #include "input/read_chart.hpp"

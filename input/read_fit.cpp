@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/read_fit_parameters.hpp"
 #include "input/read_fit_solver.hpp"

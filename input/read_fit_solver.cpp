@@ -1,6 +1,6 @@
 #include "input/read_fit_solver.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/fit_keys.hpp"
 #include "input/read_keys.hpp"

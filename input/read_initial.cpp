@@ -1,6 +1,6 @@
 #include "input/read_initial.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/toml_reader.hpp"
 

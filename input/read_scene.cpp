@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/doubts.hpp"
 #include "input/key_info.hpp"

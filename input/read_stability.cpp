@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/read_keys.hpp"
 #include "input/read_law.hpp"

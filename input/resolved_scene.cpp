@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/read_law.hpp"
 #include "input/write_keys.hpp"

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "input/read_chart.hpp"
 #include "input/read_chart_set.hpp"
@@ -12,11 +11,12 @@
 #include "input/read_scene.hpp"
 #include "input/read_stability.hpp"
 #include "input/write_keys.hpp"
+#include "io/json.hpp"
 
 namespace repose::input {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 std::vector<KeyInfo> scene_infos() {
   SceneFile scene;
@@ -143,8 +143,7 @@ Json schema_of(const KeyInfo& key) {
   Json json;
   if (const std::string text = description(key); !text.empty()) json["description"] = text;
   if (!key.fallback.empty()) {
-    const Json value = Json::parse(key.fallback, nullptr, false);
-    if (!value.is_discarded()) json["default"] = value;
+    if (const auto value = Json::try_parse(key.fallback)) json["default"] = *value;
   }
   json.update(value_schema(key));
   return json;

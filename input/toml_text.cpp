@@ -1,6 +1,6 @@
 #include "input/toml_text.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace repose::input {
 

@@ -1,6 +1,6 @@
 #include "input/write_keys.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "input/input_file.hpp"
 #include "input/key_info.hpp"

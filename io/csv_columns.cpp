@@ -7,16 +7,14 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "io/thin_evenly.hpp"
 
 namespace repose::io {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// The cells of one line; a quote inside a quoted cell is written twice.
 std::vector<std::string> cells_of(std::string_view line) {

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
+#include "io/json.hpp"
 
 namespace repose::io {
 
@@ -15,7 +15,6 @@ namespace repose::io {
 /// newline that is too short is a row cut off by a kill and is left out. Above most_rows, evenly
 /// chosen rows are kept, the first and the last among them.
 /// file: for messages. Errors: IoError with the line for a row of another length than the header.
-nlohmann::ordered_json csv_columns(std::string_view csv, std::string_view file,
-                                   std::size_t most_rows = 20000);
+Json csv_columns(std::string_view csv, std::string_view file, std::size_t most_rows = 20000);
 
 }  // namespace repose::io

@@ -4,9 +4,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include <nlohmann/json.hpp>
-
 #include "io/atomic_file.hpp"
+#include "io/json.hpp"
 #include "io/vtkhdf.hpp"
 
 namespace repose::io {
@@ -17,10 +16,10 @@ std::vector<FrameEntry> read_frame_series(const std::filesystem::path& series) {
   if (!in) throw IoError(series, "cannot read", errno);
   std::vector<FrameEntry> frames;
   try {
-    const auto json = nlohmann::json::parse(in);
+    const Json json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
     for (const auto& entry : json.at("files"))
-      frames.push_back({entry.at("name"), entry.at("time")});
-  } catch (const nlohmann::json::exception& error) {
+      frames.push_back({entry.at("name").get<std::string>(), entry.at("time").get<double>()});
+  } catch (const Json::Error& error) {
     throw IoError(series, std::string("not a series of frames: ") + error.what());
   }
   for (const FrameEntry& frame : frames)

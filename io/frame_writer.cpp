@@ -5,9 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
 #include "io/frame_reader.hpp"
+#include "io/json.hpp"
 #include "io/vtkhdf.hpp"
 
 namespace repose::io {
@@ -15,7 +14,6 @@ namespace repose::io {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 void check_base_name(const std::string& name) {
   const bool fit = std::all_of(name.begin(), name.end(), [](unsigned char c) {

@@ -11,11 +11,6 @@
 namespace repose::io {
 namespace {
 
-std::string shown(std::string_view cell) {
-  constexpr std::size_t most = 40;
-  return fmt::format("\"{}{}\"", cell.substr(0, most), cell.size() > most ? "..." : "");
-}
-
 /// Letter case and blanks taken away.
 std::string folded(std::string_view text) {
   std::string result;

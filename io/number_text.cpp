@@ -112,6 +112,11 @@ bool is_large(std::string_view whole, std::string_view fraction, std::string_vie
 
 }  // namespace
 
+std::string shown(std::string_view cell) {
+  constexpr std::size_t most = 40;
+  return '"' + std::string(cell.substr(0, most)) + (cell.size() > most ? "...\"" : "\"");
+}
+
 std::string_view trimmed(std::string_view text) {
   while (const std::size_t n = starts_with_one(text, blanks)) text.remove_prefix(n);
   const auto blank_at_end = [&] {

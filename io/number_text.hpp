@@ -4,9 +4,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace repose::io {
+
+/// A cell as messages show it: in quotes, cut after 40 characters.
+std::string shown(std::string_view cell);
 
 /// Without blanks, tabs and no-break spaces around it.
 std::string_view trimmed(std::string_view text);

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 #include <unistd.h>
+
+#include "io/json.hpp"
 
 namespace repose::io {
 
@@ -36,11 +37,10 @@ void Progress::update(double time, std::int64_t steps, std::int64_t point_steps,
 void Progress::draw(double time, std::int64_t steps, double seconds_left) {
   const double share = end_time_ > 0.0 ? time / end_time_ : 1.0;
   if (mode_ == Mode::json) {
-    nlohmann::ordered_json line{
+    Json line{
         {"event", "progress"},     {"name", name_}, {"percent", 100.0 * share},   {"time_s", time},
         {"end_time_s", end_time_}, {"step", steps}, {"point_steps_per_s", speed_}};
-    line["seconds_left"] =
-        seconds_left < 0.0 ? nlohmann::ordered_json() : nlohmann::ordered_json(seconds_left);
+    line["seconds_left"] = seconds_left < 0.0 ? Json() : Json(seconds_left);
     fmt::print("{}\n", line.dump());
     std::fflush(stdout);
     return;

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <system_error>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "io/column_header.hpp"
 #include "io/number_text.hpp"
@@ -14,12 +14,6 @@
 
 namespace repose::io {
 namespace {
-
-/// Cells in messages are cut here.
-std::string shown(std::string_view cell) {
-  constexpr std::size_t most = 40;
-  return fmt::format("\"{}{}\"", cell.substr(0, most), cell.size() > most ? "..." : "");
-}
 
 bool is_possible(std::string_view text, Separator separator, char decimal) {
   switch (separator) {

@@ -1,10 +1,10 @@
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "app/commands/chart.hpp"
 #include "input/read_chart.hpp"
 #include "input/read_fit.hpp"
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/fit_chart_picture.hpp"
 #include "repose_version.hpp"
@@ -80,11 +80,10 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
   if (!options.no_plot)
     drawn(report::fit_chart_figure(runs, task.name, first), folder.file("chart.svg"));
   const std::string status = interrupt.requested() ? "interrupted" : "done";
-  nlohmann::ordered_json summary{
-      {"repose", version_string}, {"kind", "chart_fit"},
-      {"status", status},         {"task", task.name},
-      {"seed", settings.seed},    {"evaluations", settings.max_evaluations},
-      {"first_objective", first}, {"algorithms", runs.size()}};
+  io::Json summary{{"repose", version_string}, {"kind", "chart_fit"},
+                   {"status", status},         {"task", task.name},
+                   {"seed", settings.seed},    {"evaluations", settings.max_evaluations},
+                   {"first_objective", first}, {"algorithms", runs.size()}};
   folder.write_file("summary.json", summary.dump(2) + "\n");
   if (options.json) fmt::print("{}\n", summary.dump());
   if (!options.quiet && !options.json)

@@ -1,13 +1,13 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
 #include "input/file_kind.hpp"
 #include "input/resolved_scene.hpp"
 #include "input/shipped_input.hpp"
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/sweep_picture.hpp"
 #include "repose_version.hpp"
@@ -20,7 +20,7 @@
 namespace repose::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// Pictures are drawn again while runs are still to come, at most so often.
 constexpr double seconds_between_pictures = 10.0;

@@ -1,9 +1,9 @@
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "app/commands/chart.hpp"
 #include "input/read_chart.hpp"
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/point_chart_picture.hpp"
 #include "repose_version.hpp"
@@ -37,11 +37,11 @@ ChartEnd chart_point(const CommonOptions& options, const std::string& file, bool
     folder.write_file("chart.csv", study::work_csv(points));
     if (speak) fmt::print("{}: {} settings\n", path.name, more.size());
   }
-  nlohmann::ordered_json summary{{"repose", version_string},
-                                 {"kind", "chart_point"},
-                                 {"status", interrupt.requested() ? "interrupted" : "done"},
-                                 {"quick", quick},
-                                 {"settings", points.size()}};
+  io::Json summary{{"repose", version_string},
+                   {"kind", "chart_point"},
+                   {"status", interrupt.requested() ? "interrupted" : "done"},
+                   {"quick", quick},
+                   {"settings", points.size()}};
   if (!interrupt.requested()) {
     const std::vector<study::ErrorMap> maps = study::error_maps(quick ? 11 : 41);
     const std::vector<point::TangentTest> tangents = point::tangent_convergence();

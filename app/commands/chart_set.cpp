@@ -1,5 +1,4 @@
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "app/commands/chart.hpp"
 #include "input/read_chart.hpp"
@@ -7,6 +6,7 @@
 #include "input/read_stability.hpp"
 #include "input/shipped_input.hpp"
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "report/page/write_report.hpp"
 #include "repose_version.hpp"
 #include "study/run/finished_result.hpp"
@@ -16,7 +16,7 @@ namespace repose::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// What became of a part.
 struct PartRecord {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
 #include "input/file_kind.hpp"
@@ -9,6 +8,7 @@
 #include "input/read_scene.hpp"
 #include "input/read_stability.hpp"
 #include "input/shipped_input.hpp"
+#include "io/json.hpp"
 #include "io/progress.hpp"
 #include "mpm/study/estimate.hpp"
 
@@ -46,16 +46,16 @@ io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options) 
   std::vector<std::string> warnings = file.notes;
   warnings.insert(warnings.end(), estimate.warnings.begin(), estimate.warnings.end());
   if (options.json) {
-    const nlohmann::ordered_json report{{"file", input.name()},
-                                        {"kind", "scene"},
-                                        {"name", scene.name},
-                                        {"points", estimate.points},
-                                        {"live_cells", estimate.live_cells},
-                                        {"first_dt_s", estimate.first_dt_s},
-                                        {"steps", estimate.steps},
-                                        {"memory_MB", estimate.memory_MB},
-                                        {"wall_s", estimate.seconds},
-                                        {"warnings", warnings}};
+    const io::Json report{{"file", input.name()},
+                          {"kind", "scene"},
+                          {"name", scene.name},
+                          {"points", estimate.points},
+                          {"live_cells", estimate.live_cells},
+                          {"first_dt_s", estimate.first_dt_s},
+                          {"steps", estimate.steps},
+                          {"memory_MB", estimate.memory_MB},
+                          {"wall_s", estimate.seconds},
+                          {"warnings", warnings}};
     fmt::print("{}\n", report.dump());
     return io::ExitCode::done;
   }

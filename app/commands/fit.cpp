@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <filesystem>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 #include <tbb/global_control.h>
 
 #include "app/commands/command.hpp"
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/fit_picture.hpp"
@@ -18,7 +18,7 @@
 namespace repose::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// What `repose fit` takes beyond the common options.
 struct FitArguments {

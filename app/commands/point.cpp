@@ -3,10 +3,10 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/command.hpp"
 #include "input/file_kind.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/point_picture.hpp"
 #include "report/plot/gnuplot.hpp"
@@ -16,7 +16,7 @@
 namespace repose::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// The input with what the command line changed and the defaults that numbers depend on.
 toml::table resolved(const input::InputFile& input, const input::PointTestFile& file) {
@@ -65,7 +65,7 @@ Json json_of(const toml::node& node) {
     text << toml::json_formatter{*table};
   else if (const auto* list = node.as_array())
     text << toml::json_formatter{*list};
-  return Json::parse(text.str(), nullptr, false);
+  return Json::parse(text.str());
 }
 
 /// A number for JSON: what is not finite becomes null.

@@ -1,10 +1,10 @@
 #include <filesystem>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "app/commands/command.hpp"
 #include "input/input_file.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/page/write_report.hpp"
 
@@ -12,7 +12,7 @@ namespace repose::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 io::ExitCode report(const std::vector<std::string>& folders, const CommonOptions& options) {
   const fs::path page = options.output.empty() ? io::ResultFolder::default_path("report.html")

@@ -1,10 +1,10 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/chart.hpp"
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "report/stability/pictures.hpp"
 #include "repose_version.hpp"
 #include "study/run/finished_result.hpp"
@@ -13,7 +13,7 @@
 namespace repose::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 struct StabilityArguments {
   CommonOptions common;
@@ -82,8 +82,8 @@ std::string words_for(const study::GrainCollapse& run) {
 /// The figures of parts that an interrupted run on the same input had done; null if there are none.
 Json parts_done(const io::ResultFolder& folder, const std::string& input) {
   if (study::text_of(folder.file("input.toml")) != input) return {};
-  const Json summary = Json::parse(study::text_of(folder.file("summary.json")), nullptr, false);
-  return summary.is_object() ? summary.value("parts", Json()) : Json();
+  const auto summary = Json::try_parse(study::text_of(folder.file("summary.json")));
+  return summary ? summary->value("parts", Json()) : Json();
 }
 
 class Maps {
@@ -201,7 +201,7 @@ class Maps {
   std::vector<std::string> files() const {
     std::vector<std::string> list;
     for (const auto& [name, figures] : parts_.items())
-      for (const auto& file : figures["files"]) list.push_back(file);
+      for (const auto& file : figures["files"]) list.push_back(file.get<std::string>());
     return list;
   }
 

@@ -8,15 +8,14 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "io/base64.hpp"
+#include "io/json.hpp"
 #include "io/thin_evenly.hpp"
 
 namespace repose::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 constexpr double outer = 0.005;  ///< share of values beyond each end of the colours
 

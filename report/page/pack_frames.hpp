@@ -4,9 +4,8 @@
 #include <functional>
 #include <span>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "io/frame_reader.hpp"
+#include "io/json.hpp"
 
 namespace repose::report {
 
@@ -31,8 +30,7 @@ struct PackLimits {
 /// extreme points do not bleach the rest; least and largest are the true extremes. A vector is its
 /// magnitude; tensors, and fields with one value throughout, are left out.
 /// next(i): reads frame i of `count`; the limits apply to what it returns. Errors: as next.
-nlohmann::ordered_json pack_frames(std::size_t count,
-                                   const std::function<io::Frame(std::size_t)>& next,
-                                   const PackLimits& limits = {});
+io::Json pack_frames(std::size_t count, const std::function<io::Frame(std::size_t)>& next,
+                     const PackLimits& limits = {});
 
 }  // namespace repose::report

@@ -4,15 +4,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-
 #include "embedded_report.hpp"
+#include "io/json.hpp"
 #include "repose_version.hpp"
 
 namespace repose::report {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// The page with a text in the place of each mark; the marks in the order in which they stand.
 std::string fill(std::string_view page,
@@ -55,7 +54,7 @@ std::string html_text(std::string_view text) {
 }
 
 std::string script_json(const Json& data) {
-  const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string json = data.dump();
   std::string out;
   out.reserve(json.size());
   for (const char c : json)

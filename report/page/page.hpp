@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include <nlohmann/json_fwd.hpp>
+#include "io/json.hpp"
 
 namespace repose::report {
 
@@ -12,12 +12,12 @@ namespace repose::report {
 /// results: of read_result(). The same results give the same text. Whatever a result holds reaches
 /// the page as text, never as markup: in the data every '<' is written \u003c, so that nothing ends
 /// the element early, and the program sets text nodes only. Bytes that are no UTF-8 become U+FFFD.
-std::string report_page(std::span<const nlohmann::ordered_json> results, std::string_view title);
+std::string report_page(std::span<const io::Json> results, std::string_view title);
 
 /// &, <, > and both quotes as entities: for text and for attributes.
 std::string html_text(std::string_view text);
 
 /// JSON that may stand inside a script element.
-std::string script_json(const nlohmann::ordered_json& data);
+std::string script_json(const io::Json& data);
 
 }  // namespace repose::report

@@ -7,12 +7,12 @@
 #include <sstream>
 #include <system_error>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "input/input_file.hpp"
 #include "io/csv_columns.hpp"
 #include "io/frame_reader.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/page/pack_frames.hpp"
 
@@ -20,7 +20,7 @@ namespace repose::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 constexpr std::uintmax_t largest_picture =
     4'000'000;  ///< bytes; a larger one stays out of the page
@@ -35,9 +35,9 @@ std::string text_of(const fs::path& file) {
 }
 
 Json json_of(const fs::path& file) {
-  Json json = Json::parse(text_of(file), nullptr, false);
-  if (!json.is_object()) throw io::IoError(file, "is not a JSON object");
-  return json;
+  const auto json = Json::try_parse(text_of(file));
+  if (!json || !json->is_object()) throw io::IoError(file, "is not a JSON object");
+  return *json;
 }
 
 /// In the order of their names, so that the page does not depend on the file system.
@@ -101,8 +101,8 @@ Json read_result(const fs::path& folder) {
   result["label"] =
       name == "." ? fs::absolute(folder).parent_path().filename().string() : name.string();
   result["summary"] = json_of(folder / "summary.json");
-  const auto kind = result["summary"].find("kind");
-  result["kind"] = kind != result["summary"].end() && kind->is_string() ? *kind : Json("run");
+  const Json* kind = result["summary"].find("kind");
+  result["kind"] = kind && kind->is_string() ? *kind : Json("run");
   result["notes"] = Json::array();
   result["tables"] = Json::object();
   result["pictures"] = Json::array();

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include <nlohmann/json_fwd.hpp>
+#include "io/json.hpp"
 
 namespace repose::report {
 
@@ -14,6 +14,6 @@ namespace repose::report {
 /// kind: as summary.json says; a summary without one is that of a run. Parts that the folder does
 /// not have are absent.
 /// Errors: BadInput where the folder is no result folder; IoError for what cannot be read.
-nlohmann::ordered_json read_result(const std::filesystem::path& folder);
+io::Json read_result(const std::filesystem::path& folder);
 
 }  // namespace repose::report

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/page/page.hpp"
 #include "report/page/read_result.hpp"
@@ -13,12 +13,12 @@ namespace repose::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// Two folders of one name are told apart by the paths that were given.
 void tell_apart(std::vector<Json>& results) {
   std::vector<std::string> labels;
-  for (const Json& result : results) labels.push_back(result["label"]);
+  for (const Json& result : results) labels.push_back(result["label"].get<std::string>());
   for (std::size_t i = 0; i < results.size(); ++i)
     if (std::count(labels.begin(), labels.end(), labels[i]) > 1)
       results[i]["label"] = results[i]["path"];
@@ -27,7 +27,7 @@ void tell_apart(std::vector<Json>& results) {
 }
 
 std::string title_of(const std::vector<Json>& results) {
-  if (results.size() == 1) return results.front()["label"];
+  if (results.size() == 1) return results.front()["label"].get<std::string>();
   if (results.size() == 2)
     return fmt::format("{} and {}", results[0]["label"].get<std::string>(),
                        results[1]["label"].get<std::string>());

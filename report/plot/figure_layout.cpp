@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "report/plot/legend_place.hpp"
 

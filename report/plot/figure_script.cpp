@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <iterator>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "report/plot/figure_layout.hpp"
 #include "report/plot/gnuplot.hpp"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "mpm/study/estimate.hpp"
 #include "repose_version.hpp"
 #include "study/accuracy/sweep_report.hpp"
@@ -15,7 +15,7 @@
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// CPU seconds of one run with each of these cells and a Courant number of 1: measured on a few
 /// steps with cells that make some thousand points, and 8 times as much for half of them (twice the

@@ -6,8 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "io/json.hpp"
 #include "study/accuracy/accuracy_table.hpp"
 #include "study/accuracy/sweep.hpp"
 
@@ -70,7 +69,7 @@ class AccurateRun {
   input::SceneFile advised() const;
 
   /// summary.json without what only an end that was reached has.
-  nlohmann::ordered_json summary(const std::string& status, std::uint64_t seed) const;
+  io::Json summary(const std::string& status, std::uint64_t seed) const;
   /// accuracy.csv: a row per run. estimate.csv: the quantity with its error bar, or the curve.
   std::string runs_csv(const Estimate& estimate) const;
   std::string estimate_csv(const Estimate& estimate) const;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "study/accuracy/accuracy_table.hpp"
 #include "study/accuracy/exact_flow.hpp"

@@ -6,10 +6,10 @@
 #include <fstream>
 #include <sstream>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "input/resolved_scene.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "repose_version.hpp"
 #include "study/run/finished_result.hpp"
@@ -86,13 +86,13 @@ std::string_view after_version(std::string_view text) {
 }
 
 RunSummary read_summary(const fs::path& file) {
-  const auto json = nlohmann::json::parse(text_of(file), nullptr, false);
-  if (!json.is_object()) throw io::IoError(file, "is not the summary of a run");
+  const auto json = io::Json::try_parse(text_of(file));
+  if (!json || !json->is_object()) throw io::IoError(file, "is not the summary of a run");
   RunSummary summary;
-  summary.status = json.value("status", "");
-  summary.reason = json.value("reason", "");
-  summary.warnings = json.value("warnings", summary.warnings);
-  for (const auto& [name, value] : json.items())
+  summary.status = json->value("status", "");
+  summary.reason = json->value("reason", "");
+  summary.warnings = json->value("warnings", summary.warnings);
+  for (const auto& [name, value] : json->items())
     if (value.is_number()) summary.figures[name] = value.get<double>();
   return summary;
 }

@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "io/json.hpp"
 
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// Figures of summary.json that chart.csv passes on under their own names.
 constexpr std::array<std::string_view, 17> copied{"points",

@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json_fwd.hpp>
-
+#include "io/json.hpp"
 #include "study/accuracy/errors.hpp"
 
 namespace repose::study {
@@ -27,10 +26,10 @@ constexpr double allowed_change = 0.01;
 
 /// Per transfer, kernel and cell size: the ends at the longest and shortest step, the changes
 /// between both and when the step is quartered, and whether the latter stay below allowed_change.
-nlohmann::ordered_json sweep_answer(const std::vector<SweepSeries>& series);
+io::Json sweep_answer(const std::vector<SweepSeries>& series);
 
 /// The answer as a table for people.
-std::string answer_text(const nlohmann::ordered_json& answer);
+std::string answer_text(const io::Json& answer);
 
 /// errors.csv: a row per finished run with its error in every quantity that has a reference, the
 /// ledger's, its CPU seconds, and whether it lies on the Pareto front of each quantity.
@@ -50,10 +49,9 @@ std::vector<std::string> warnings_of(std::span<const SweepRun> runs);
 
 /// The reference with its error bars, and per family and quantity the observed orders and the
 /// constants of the error model.
-nlohmann::ordered_json errors_answer(std::span<const SweepRun> runs,
-                                     const SweepReference& reference);
+io::Json errors_answer(std::span<const SweepRun> runs, const SweepReference& reference);
 
 /// The same as a table for people.
-std::string errors_text(const nlohmann::ordered_json& answer);
+std::string errors_text(const io::Json& answer);
 
 }  // namespace repose::study

@@ -1,6 +1,6 @@
 #include "study/chart/fit_chart.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "study/fit/twin.hpp"
 

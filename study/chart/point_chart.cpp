@@ -1,6 +1,6 @@
 #include "study/chart/point_chart.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace repose::study {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <fstream>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "repose_version.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 using calibration::Optimum;
 using calibration::StartResult;
 using Eigen::Index;
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
@@ -369,8 +369,9 @@ std::vector<StartResult> read_journal(const std::filesystem::path& path,
   bool first = true;
   while (std::getline(in, line)) {
     const bool whole = !in.eof();
-    const Json j = Json::parse(line, nullptr, false);
-    if (j.is_discarded() || !whole) break;  // cut short by a kill
+    const auto json = Json::try_parse(line);
+    if (!json || !whole) break;  // cut short by a kill
+    const Json& j = *json;
     if (first) {
       first = false;
       if (j.value("fingerprint", "") != file.fingerprint)
@@ -387,7 +388,7 @@ std::vector<StartResult> read_journal(const std::filesystem::path& path,
       if (j.contains("global")) s.global = optimum_of(j.at("global"));
       s.optimum = optimum_of(j.at("optimum"));
       starts.push_back(std::move(s));
-    } catch (const nlohmann::json::exception&) {
+    } catch (const io::Json::Error&) {
       throw input::BadInput({fmt::format("{}: not a journal of starts", path.string())});
     }
   }

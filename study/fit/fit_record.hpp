@@ -3,11 +3,10 @@
 /// What a fit leaves in words and figures: fit.json, fitted.toml, and the starts' journal that a
 /// resumed or merged fit takes up.
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "calibration/misfit_cause.hpp"
 #include "calibration/uncertainty.hpp"
 #include "input/read_fit.hpp"
+#include "io/json.hpp"
 
 namespace repose::study {
 
@@ -27,8 +26,8 @@ struct FitResult {
 
 /// The text of fit.json. status: "done", "not converged", "failed" or "interrupted". Values that
 /// are not finite become null.
-nlohmann::ordered_json fit_report(const input::FitFile& file, const calibration::Problem& problem,
-                                  const FitResult& result, const std::string& status);
+io::Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
+                    const FitResult& result, const std::string& status);
 
 /// predictions.csv: measured and fitted value of every row that was compared or held out, in SI.
 std::string predictions_csv(const input::FitFile& file, const calibration::Problem& problem,

@@ -1,6 +1,6 @@
 #include "study/fit/search.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "calibration/optimise.hpp"
 

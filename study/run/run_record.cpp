@@ -5,15 +5,15 @@
 #include <cmath>
 #include <fstream>
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
+#include "io/json.hpp"
 #include "repose_version.hpp"
 
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
@@ -132,22 +132,22 @@ void RunRecord::continue_from(const std::filesystem::path& summary) {
   std::ifstream in(summary);
   if (!in) throw io::IoError(summary, "cannot read what the interrupted run noted", errno);
   try {
-    const Json noted = Json::parse(in);
-    peak_kinetic_J_per_m =
-        std::max(peak_kinetic_J_per_m, double{noted.at(named("peak_kinetic_J_per_m", dimensions))});
-    wall_s = noted.at("wall_s");
-    cpu_s = noted.at("cpu_s");
-    sessions = int{noted.at("sessions")} + 1;
-  } catch (const Json::exception& error) {
+    const Json noted = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
+    peak_kinetic_J_per_m = std::max(
+        peak_kinetic_J_per_m, noted.at(named("peak_kinetic_J_per_m", dimensions)).get<double>());
+    wall_s = noted.at("wall_s").get<double>();
+    cpu_s = noted.at("cpu_s").get<double>();
+    sessions = noted.at("sessions").get<int>() + 1;
+  } catch (const Json::Error& error) {
     throw io::IoError(summary, std::string("is not the summary of a run: ") + error.what());
   }
 }
 
 std::string noted_status(const std::filesystem::path& summary) {
   std::ifstream in(summary);
-  const Json noted = in ? Json::parse(in, nullptr, false) : Json();
-  const auto status = noted.is_object() ? noted.find("status") : noted.end();
-  return status != noted.end() && status->is_string() ? status->get<std::string>() : "";
+  const auto noted = Json::try_parse(std::string(std::istreambuf_iterator<char>(in), {}));
+  const Json* status = noted ? noted->find("status") : nullptr;
+  return status && status->is_string() ? status->get<std::string>() : "";
 }
 
 double RunRecord::energy_error(const mpm::SeriesRow& last) const {

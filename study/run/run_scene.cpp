@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <set>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include <fmt/core.h>
 
 #include "input/resolved_scene.hpp"
 #include "io/interrupt.hpp"
+#include "io/json.hpp"
 #include "study/run/output_schedule.hpp"
 #include "study/run/run_record.hpp"
 
@@ -17,7 +17,7 @@ namespace repose::study {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 /// Says where a run stands: warnings on the standard error output, the rest on the standard output.
 class Voice {

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "models/modified_cam_clay.hpp"
 
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 using point::ClayCell;
 using point::ClayOutcome;
 using point::ClayStart;

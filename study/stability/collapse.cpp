@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "models/law_material.hpp"
 #include "models/linearised_cam_clay.hpp"
@@ -10,9 +10,9 @@
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
-constexpr int rows = 60;
+constexpr int rows_of_series = 60;
 
 void add(std::string& csv, const std::string& name, const mpm::History& history) {
   for (const mpm::SeriesRow& r : history.rows)
@@ -57,7 +57,8 @@ class Collapses {
         if (linearised)
           prescribed.material = std::make_shared<LawMaterial<LinearisedCamClay>>(
               checked_parameters(scene.bodies.front().law));
-        ClayCollapse run{c.key, c.tilt, dt, linearised, mpm::record(scene, prescribed, rows)};
+        ClayCollapse run{c.key, c.tilt, dt, linearised,
+                         mpm::record(scene, prescribed, rows_of_series)};
         const mpm::History& history = run.history;
         const std::string name = linearised ? "linearised" : "exact";
         add(csv_, fmt::format("clay_{}_{}", c.key, name), history);
@@ -94,7 +95,7 @@ class Collapses {
       sets.push_back(h_);
       mpm::Scene scene = paper_scene("flat_mu_i", sets);
       raise_top_to_cells(scene);
-      GrainCollapse run{c.key, c.title, mpm::record(scene, {}, rows)};
+      GrainCollapse run{c.key, c.title, mpm::record(scene, {}, rows_of_series)};
       const mpm::History& history = run.history;
       add(csv_, c.key, history);
       const mpm::SeriesRow& last = history.rows.back();

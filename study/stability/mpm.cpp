@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "mpm/study/failure_modes.hpp"
 
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 using mpm::Discretisation;
 
 class MethodFailures {

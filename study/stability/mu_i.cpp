@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "models/ill_posedness.hpp"
 #include "mpm/output/history.hpp"
@@ -14,7 +14,7 @@
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 using point::ShearFlow;
 
 /// ηk²/ρ over ck of the waves that judge the (incompressible) criterion, and K/p.

@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "input/read_stability.hpp"
+#include "io/json.hpp"
 #include "mpm/scene/scene.hpp"
 
 namespace repose::study {
@@ -20,7 +19,7 @@ struct MapTable {
 /// What every part gives; each adds what its pictures need.
 struct PartMaps {
   std::vector<MapTable> tables;
-  nlohmann::ordered_json figures;  ///< what summary.json gets under the part's name
+  io::Json figures;  ///< what summary.json gets under the part's name
 };
 
 /// n numbers from `low` to `high`, evenly spaced in the logarithm.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "models/ill_posedness.hpp"
 #include "mpm/study/shear_cell.hpp"
@@ -13,7 +13,7 @@
 namespace repose::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 
 constexpr double stiffness = shear_cell_stiffness;
 constexpr double acoustic_share = shear_cell_acoustic_share;

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "app/command_line.hpp"
+#include "io/json.hpp"
 #include "repose_version.hpp"
 #include "study/accuracy/sweep.hpp"
 #include "tests/app/csv_table.hpp"
@@ -146,8 +146,8 @@ class ChartMpm : public testing::Test {
     EXPECT_FALSE(fs::exists(base_ / "bad"));
     return error_;
   }
-  nlohmann::json summary(const std::string& out) const {
-    return nlohmann::json::parse(content_of(base_ / out / "summary.json"));
+  io::Json summary(const std::string& out) const {
+    return io::Json::parse(content_of(base_ / out / "summary.json"));
   }
 
   const ScratchFolder scratch_;
@@ -188,7 +188,7 @@ TEST_F(ChartMpm, AQuickChart) {
            "output.frame_interval=0", "--threads", "1"},
           "hand"),
       0);
-  const nlohmann::json hand = summary("hand");
+  const io::Json hand = summary("hand");
   EXPECT_EQ(chart[0].at("steps"), std::to_string(hand["steps"].get<int>()));
   for (const char* key :
        {"front_m", "front_99_m", "height_m", "kinetic_J_per_m", "angular_momentum"})
@@ -201,7 +201,7 @@ TEST_F(ChartMpm, AQuickChart) {
   EXPECT_EQ(history[60].at("time_s"), "0.2");
   EXPECT_EQ(history[60].at("front_m"), chart[0].at("front_m"));
 
-  const nlohmann::json s = summary("a");
+  const io::Json s = summary("a");
   EXPECT_EQ(s["status"], "done");
   EXPECT_EQ(s["runs"], 4);
   ASSERT_EQ(s["answer"].size(), 2u);
@@ -240,7 +240,7 @@ TEST_F(ChartMpm, RunsOfAnotherSolverAreRepeated) {
   };
   const double first = front();
   const fs::path folder = base_ / study::run_of(scene, scene.scene).scene().name;
-  nlohmann::json marked = nlohmann::json::parse(content_of(folder / "summary.json"));
+  io::Json marked = io::Json::parse(content_of(folder / "summary.json"));
   marked["front_m"] = 123.0;
   std::ofstream(folder / "summary.json") << marked;
   EXPECT_EQ(front(), 123.0) << "it is not repeated";

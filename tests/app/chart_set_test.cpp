@@ -8,15 +8,15 @@
 #include <map>
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "app/command_line.hpp"
 #include "input/read_chart_set.hpp"
 #include "input/read_scene.hpp"
 #include "input/shipped_input.hpp"
+#include "io/json.hpp"
 #include "pointdriver/study/tangent_convergence.hpp"
 #include "study/accuracy/errors.hpp"
 #include "study/accuracy/exact_flow.hpp"
@@ -54,8 +54,8 @@ class ChartSetTest : public testing::Test {
     error_ = testing::internal::GetCapturedStderr();
     return code;
   }
-  nlohmann::json summary(const std::string& out) const {
-    return nlohmann::json::parse(study::text_of(base_ / out / "summary.json"));
+  io::Json summary(const std::string& out) const {
+    return io::Json::parse(study::text_of(base_ / out / "summary.json"));
   }
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(base_ / name) << text;
@@ -102,7 +102,7 @@ TEST_F(ChartSetTest, TheShippedSetCanBeMade) {
 // The whole gallery in small: every part, its table and picture, the page, and nothing twice.
 TEST_F(ChartSetTest, EveryChartInSmallAndNothingTwice) {
   ASSERT_EQ(run({"all", "--quick"}, "all"), 0) << error_;
-  const nlohmann::json first = summary("all");
+  const io::Json first = summary("all");
   EXPECT_EQ(first["status"], "done");
   input::InputFile file = input::InputFile::parse(input::shipped_chart_set(), "all.toml");
   const input::ChartSet set = input::read_chart_set(file, "", true);
@@ -139,7 +139,7 @@ TEST_F(ChartSetTest, EveryChartInSmallAndNothingTwice) {
   EXPECT_EQ(sleep.back().at("step.sleep_speed"), "0.003");
 
   ASSERT_EQ(run({"all", "--quick", "--resume"}, "all"), 0) << error_;
-  const nlohmann::json second = summary("all");
+  const io::Json second = summary("all");
   for (const auto& part : second["parts"]) EXPECT_EQ(part["kept"], true) << part["name"];
   for (const auto& [name, text] : before)
     EXPECT_EQ(study::text_of(base_ / "all" / name / "summary.json"), text)

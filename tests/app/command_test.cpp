@@ -11,12 +11,12 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <pty.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "io/json.hpp"
 #include "tests/scratch_folder.hpp"
 
 using repose::content_of;
@@ -25,7 +25,7 @@ using repose::ScratchFolder;
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using Json = repose::io::Json;
 
 const std::string scenes = REPOSE_SOURCE_DIR "/data/scenes/";
 
@@ -150,7 +150,7 @@ TEST_F(CommandTest, Check) {
   const Json report = Json::parse(run({"check", scenes + "flat_mu_i.toml", "--json"}).out);
   EXPECT_EQ(report.at("points"), 8192);
   EXPECT_EQ(report.at("live_cells"), 2048);  // 32 × 64 cells of 4 points
-  EXPECT_GT(report.at("steps"), 1000);
+  EXPECT_GT(report.at("steps").get<int>(), 1000);
   EXPECT_EQ(fs::exists(base_ / "results"), false);
 }
 
@@ -259,7 +259,7 @@ TEST_F(CommandTest, QuietAndJson) {
   EXPECT_EQ(json.exit, 0);
   std::vector<std::string> events;
   for (const std::string& line : lines_of(json.out))
-    events.push_back(Json::parse(line).at("event"));
+    events.push_back(Json::parse(line).at("event").get<std::string>());
   EXPECT_EQ(events, (std::vector<std::string>{"start", "progress", "progress", "end"}));
 }
 

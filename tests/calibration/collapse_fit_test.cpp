@@ -4,12 +4,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "app/command_line.hpp"
 #include "input/collapse_simulator.hpp"
+#include "io/json.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {
@@ -78,10 +78,10 @@ int fit_command(const fs::path& file, const fs::path& out, bool resume) {
   return run_command_line(static_cast<int>(argv.size()), argv.data());
 }
 
-nlohmann::json fit(const fs::path& file, const fs::path& out) {
+io::Json fit(const fs::path& file, const fs::path& out) {
   EXPECT_EQ(fit_command(file, out, false), 0);
   std::ifstream in(out / "fit.json");
-  return nlohmann::json::parse(in);
+  return io::Json::parse(std::string(std::istreambuf_iterator<char>(in), {}));
 }
 
 TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
@@ -137,7 +137,7 @@ TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
     return Eigen::VectorXd(r.y.reshaped());
   };
   const char *fine = "0.0333333333333333", *coarse = "0.05";
-  const double value = mu_0["value"], range = 0.56 - 0.1, step = 0.03 * range;
+  const double value = mu_0["value"].get<double>(), range = 0.56 - 0.1, step = 0.03 * range;
   const Eigen::VectorXd slope =
       (figures(fine, value + step) - figures(fine, value - step)) / (2.0 * step);
   const Eigen::VectorXd change = 2.0 * (figures(fine, value) - figures(coarse, value));
@@ -146,8 +146,9 @@ TEST(CollapseFit, IntervalHoldsTheTruthOfAnotherResolutionAndRunsAreKept) {
   // The standard error holds it beside the scatter of the readings, of which the declared noise is
   // the least; and the interval, 0.15 to 0.49, is of that size and not that of the bounds: beside
   // these a normal error is cut off, and 95 % of what is left lie within 1.96 of it to each side.
-  const double error = mu_0["standard_error"], noise = 0.005 / slope.norm();
-  const double low = mu_0["interval_95"][0], high = mu_0["interval_95"][1];
+  const double error = mu_0["standard_error"].get<double>(), noise = 0.005 / slope.norm();
+  const double low = mu_0["interval_95"][0].get<double>(),
+               high = mu_0["interval_95"][1].get<double>();
   EXPECT_GE(error, std::hypot(shift, noise) * (1.0 - 1e-6));
   EXPECT_GT(low, 0.1);
   EXPECT_LT(high, 0.56);

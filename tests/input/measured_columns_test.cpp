@@ -2,7 +2,7 @@
 // them: the numbers are the same to the last bit, and what is wrong is said.
 #include <fstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "input/fit_table.hpp"

@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "io/json.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::io {
@@ -172,7 +172,7 @@ TEST_F(FrameWriterTest, SeriesFollowsEveryFrame) {
   FrameWriter writer(folder_, "heap");
   for (std::size_t k = 0; k < 3; ++k) {
     writer.write(sample.view(0.1 * static_cast<double>(k)));
-    const auto series = nlohmann::json::parse(content_of(folder_ / "heap.hdf.series"));
+    const auto series = io::Json::parse(content_of(folder_ / "heap.hdf.series"));
     EXPECT_EQ(series.at("file-series-version"), "1.0");
     ASSERT_EQ(series.at("files").size(), k + 1);
     EXPECT_EQ(series["files"][k]["name"], "heap_0000" + std::to_string(k) + ".hdf");
@@ -203,7 +203,7 @@ TEST_F(FrameWriterTest, ContinuesAfterARestart) {
   EXPECT_FALSE(fs::exists(folder_ / "heap_00002.hdf"));
   EXPECT_FALSE(fs::exists(folder_ / "heap_00003.hdf"));
   EXPECT_EQ(writer.write(sample.view(0.25)).filename(), "heap_00002.hdf");
-  const auto series = nlohmann::json::parse(content_of(writer.series_path()));
+  const auto series = io::Json::parse(content_of(writer.series_path()));
   ASSERT_EQ(series["files"].size(), 3u);
   EXPECT_EQ(series["files"][2]["time"], 0.25);
 

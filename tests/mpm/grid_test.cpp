@@ -19,7 +19,7 @@ void expect_sorted(const Grid& grid, const PointSet& points, std::size_t body) {
   std::set<std::int64_t> seen;
   std::size_t next = 0;
   for (const PointBlock& pb : grid.point_blocks) {
-    const Range& range = pb.range[body];
+    const SlotRange& range = pb.range[body];
     EXPECT_EQ(range.begin, next) << "ranges follow each other";
     EXPECT_EQ(range.begin % pack_size, 0U) << "ranges begin with a pack";
     next = range.begin + padded(range.count);

@@ -25,7 +25,7 @@ PointSet cloud() { return random_points(200, {4.0, 2.0}, {6.0, 3.0}, 11); }
 /// ē of every point.
 template <class K>
 AlignedVector<double> means(PointSet points, const AlignedVector<double>& elastic) {
-  const Range all{0, points.count};
+  const SlotRange all{0, points.count};
   Tile tile;
   for (auto& channel : tile) channel.fill(0.0);
   points_to_tile<K, true, true>(points, all, h, origin, elastic.data(), tile);

@@ -41,9 +41,9 @@ TEST(Storage, RoundsFieldsToAFloatAndPositionsToTwo) {
 
 TEST(Storage, ReadLeavesThePointsAndUpdateRoundsThem) {
   PointSet points = in_single(random_points(64, {0.0, 0.0}, {1.0, 1.0}, 3));
-  const Range middle{Pack::size, 7};
+  const SlotRange middle{Pack::size, 7};
   const double before = points[VX][middle.begin];
-  const auto triple = [](PointSet& part, const Range& range) {
+  const auto triple = [](PointSet& part, const SlotRange& range) {
     for (std::size_t k = 0; k < range.count; ++k) part.data(VX)[range.begin + k] *= 3.0;
   };
   points.read(middle, triple);

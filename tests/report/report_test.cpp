@@ -6,15 +6,15 @@
 #include <functional>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "input/input_file.hpp"
 #include "io/base64.hpp"
 #include "io/csv_columns.hpp"
 #include "io/frame_writer.hpp"
+#include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "io/thin_evenly.hpp"
 #include "report/page/pack_frames.hpp"
@@ -26,7 +26,7 @@ namespace repose::report {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = io::Json;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ThinEvenly, KeepsBothEnds) {
@@ -116,10 +116,10 @@ TEST(PackFrames, PlacesAndValuesComeBackWithinHalfAStep) {
   EXPECT_EQ(packed["counts"], Json::parse("[3, 2]"));
   EXPECT_EQ(packed["lost"], 0);
   EXPECT_EQ(packed["depth"], false);
-  const std::vector<std::uint8_t> xy = decoded(packed["xy"]);
+  const std::vector<std::uint8_t> xy = decoded(packed["xy"].get<std::string>());
   ASSERT_EQ(xy.size(), 20u);
   const Json& field = packed["fields"][0];
-  const std::vector<std::uint8_t> codes = decoded(field["codes"]);
+  const std::vector<std::uint8_t> codes = decoded(field["codes"].get<std::string>());
   ASSERT_EQ(codes.size(), 5u);
   std::size_t at = 0;
   for (const io::Frame& frame : frames)
@@ -129,7 +129,7 @@ TEST(PackFrames, PlacesAndValuesComeBackWithinHalfAStep) {
                            (xy[4 * at] + 256 * xy[4 * at + 1]);
       // half a step of the code, and the rounding of the place to float, 2⁻²⁴ of at most 1.2
       EXPECT_NEAR(x, frame.position_m[3 * i], 0.5 * 1.2 / 65534.0 + 1.2 * 6e-8);
-      const double lower = field["lower"], upper = field["upper"];
+      const double lower = field["lower"].get<double>(), upper = field["upper"].get<double>();
       const double p = lower + (upper - lower) / 254.0 * codes[at];
       // values beyond the colours stand at their ends
       const double wanted = std::clamp(frame.fields[0].values[i], lower, upper);
@@ -144,9 +144,9 @@ TEST(PackFrames, WhatIsNoNumberIsCountedAndMarked) {
     return frame_of(0.0, {0.0, nan, 1.0}, {1.0, 2.0, nan});
   });
   EXPECT_EQ(packed["lost"], 3);  // x and y of one point, the pressure of another
-  const std::vector<std::uint8_t> xy = decoded(packed["xy"]);
+  const std::vector<std::uint8_t> xy = decoded(packed["xy"].get<std::string>());
   EXPECT_EQ(xy[4] + 256 * xy[5], 65535);
-  EXPECT_EQ(decoded(packed["fields"][0]["codes"])[2], 255);
+  EXPECT_EQ(decoded(packed["fields"][0]["codes"].get<std::string>())[2], 255);
 }
 
 TEST(PackFrames, AFewExtremePointsDoNotBleachTheColours) {

@@ -3,12 +3,12 @@
 #include <fstream>
 #include <sstream>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "app/command_line.hpp"
+#include "io/json.hpp"
 #include "study/accuracy/accuracy_table.hpp"
 #include "study/accuracy/errors.hpp"
 #include "tests/app/csv_table.hpp"
@@ -40,8 +40,8 @@ class Accuracy : public testing::Test {
     EXPECT_FALSE(fs::exists(base_ / "bad"));
     return error_;
   }
-  nlohmann::json summary(const std::string& out) const {
-    return nlohmann::json::parse(content_of(base_ / out / "summary.json"));
+  io::Json summary(const std::string& out) const {
+    return io::Json::parse(content_of(base_ / out / "summary.json"));
   }
 
   /// Kinetic energy over time of a run or an estimate.
@@ -63,7 +63,7 @@ TEST_F(Accuracy, RunsCoarseAndFineAndGivesAnErrorBar) {
   const std::vector<std::string> words{"run",   scene_,    "--accuracy", "0.2",
                                        "--for", "kinetic", "--set",      "scene.end_time=0.2"};
   ASSERT_EQ(run(words, "a"), 0) << error_;
-  const nlohmann::json s = summary("a");
+  const io::Json s = summary("a");
   EXPECT_EQ(s["kind"], "accuracy");
   EXPECT_EQ(s["status"], "done");
   EXPECT_EQ(s["met"], true);
@@ -98,7 +98,7 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
           "a"),
       0)
       << error_;
-  const nlohmann::json s = summary("a");
+  const io::Json s = summary("a");
   input::InputFile file = input::InputFile::read(scene_);
   const mpm::Scene scene = input::read_scene(file).scene;
   bool measured = false;
@@ -111,7 +111,7 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
   ASSERT_NE(used, candidates.end());
   Convergence again(used->model, std::sqrt(0.2 * 0.4));
   for (const auto& level : s["runs"])
-    again.add(level["h_m"],
+    again.add(level["h_m"].get<double>(),
               kinetic(fs::path("a/runs") / level["run"].get<std::string>() / "series.csv"));
   const Estimate expected = again.estimate();
   // sums of some 500 products that are scaled by another interval: 500 eps
