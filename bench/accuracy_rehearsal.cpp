@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "study/accuracy/accuracy_table.hpp"
 #include "study/accuracy/errors.hpp"

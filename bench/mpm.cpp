@@ -10,7 +10,7 @@
 #include <map>
 
 #include <benchmark/benchmark.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/mid_collapse.hpp"
 #include "bench/mpm_cost.hpp"

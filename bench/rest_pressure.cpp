@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "tests/mpm/scenes.hpp"
 

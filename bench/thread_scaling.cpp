@@ -10,7 +10,7 @@
 #include <chrono>
 #include <cstdlib>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "bench/mid_collapse.hpp"
 #include "input/read_scene.hpp"

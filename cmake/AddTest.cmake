@@ -4,10 +4,6 @@
 # "nightly", which scripts/test leaves out unless it is asked for.
 include(GoogleTest)
 
-# Headers that nearly every test needs, parsed once and not eighty times, a second of each.
-# CMAKE_DISABLE_PRECOMPILE_HEADERS=ON turns it off, for compiler caches that cannot look into them.
-set(repose_test_headers <gtest/gtest.h> <filesystem> <fstream> <functional>)
-
 function(repose_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "NIGHTLY" "LABEL" "SOURCES;LIBS")
   if(arg_UNPARSED_ARGUMENTS)
@@ -23,13 +19,9 @@ function(repose_add_test name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE repose_flags ${arg_LIBS} GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE REPOSE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  get_property(with_headers GLOBAL PROPERTY repose_test_with_headers)
-  if(with_headers)
-    target_precompile_headers(${name} REUSE_FROM ${with_headers})
-  else()
-    target_precompile_headers(${name} PRIVATE ${repose_test_headers})
-    set_property(GLOBAL PROPERTY repose_test_with_headers ${name})
-  endif()
+  # what is tested is compiled as it is for users; what tests it need not be
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  repose_precompile(${name} test)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${arg_LABEL})
   if(arg_NIGHTLY)
     # gtest_discover_tests cannot pass a list of labels on, so a second file that ctest reads does.

@@ -121,7 +121,7 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
     std::size_t next = 0;
     for (std::size_t block = 0; block < point_blocks.size(); ++block) {
       const std::size_t first_key = block * nodes;
-      Range& range = point_blocks[block].range[b];
+      SlotRange& range = point_blocks[block].range[b];
       range.begin = next;
       for (std::size_t key = first_key; key < first_key + nodes; ++key) {
         const std::size_t in_cell = start[key];
@@ -140,7 +140,7 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
       is_padding[slot] = false;
     }
     for (const PointBlockOf<dim>& pb : point_blocks) {
-      const Range& range = pb.range[b];
+      const SlotRange& range = pb.range[b];
       for (std::size_t k = range.count; k < padded(range.count); ++k)
         order[range.begin + k] = order[range.begin + range.count - 1];
     }

@@ -106,13 +106,13 @@ template <int dim>
 struct PointBlockOf {
   std::array<int, Shape<dim>::axes> at{};  ///< block coordinates
   std::array<std::int32_t, Shape<dim>::around>
-      node_block{};          ///< the node blocks around, row by row
-  std::vector<Range> range;  ///< per body
+      node_block{};              ///< the node blocks around, row by row
+  std::vector<SlotRange> range;  ///< per body
   Rest rest;
 
   std::size_t points() const {
     std::size_t n = 0;
-    for (const Range& r : range) n += r.count;
+    for (const SlotRange& r : range) n += r.count;
     return n;
   }
 };

@@ -9,7 +9,7 @@
 namespace repose::mpm {
 
 template <int dim>
-typename PointsOf<dim>::Batch PointsOf<dim>::batch(const Range& range) {
+typename PointsOf<dim>::Batch PointsOf<dim>::batch(const SlotRange& range) {
   Batch b;
   b.count = range.count;
   b.density = field[At::rho].data() + range.begin;
@@ -63,7 +63,7 @@ void PointsOf<dim>::set(std::size_t f, std::size_t slot, double value) {
 }
 
 template <int dim>
-PointsOf<dim>& PointsOf<dim>::unpacked(const Range& range) const {
+PointsOf<dim>& PointsOf<dim>::unpacked(const SlotRange& range) const {
   static thread_local PointsOf copy;
   if (copy.material != material) copy.material = material;
   copy.rho_0 = rho_0;
@@ -91,7 +91,7 @@ PointsOf<dim>& PointsOf<dim>::unpacked(const Range& range) const {
 }
 
 template <int dim>
-void PointsOf<dim>::pack(const PointsOf& copy, const Range& range) {
+void PointsOf<dim>::pack(const PointsOf& copy, const SlotRange& range) {
   const std::size_t n = padded(range.count);
   for (std::size_t f = 0; f < fields; ++f) {
     const double* const from = copy.data(f);

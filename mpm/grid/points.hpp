@@ -78,7 +78,7 @@ class FieldView {
 /// A contiguous run of slots: the points of one body in one block. `begin` is a multiple of the
 /// pack size; the slots between count and padded(count) hold copies of the last point, valid but
 /// never transferred.
-struct Range {
+struct SlotRange {
   std::size_t begin = 0;
   std::size_t count = 0;
 };
@@ -128,20 +128,20 @@ struct PointsOf {
 
   /// Views of the points of a range, for the law; strain and outputs are left to the caller. Of
   /// points in double precision.
-  Batch batch(const Range& range);
+  Batch batch(const SlotRange& range);
 
   /// Calls f(points, range) with a range of points in double precision: these, or a copy whose
   /// changes are lost (read) or rounded and kept (update).
   template <class F>
-  void read(const Range& range, F&& f) {
+  void read(const SlotRange& range, F&& f) {
     if (!single) return f(*this, range);
-    f(unpacked(range), Range{0, range.count});
+    f(unpacked(range), SlotRange{0, range.count});
   }
   template <class F>
-  void update(const Range& range, F&& f) {
+  void update(const SlotRange& range, F&& f) {
     if (!single) return f(*this, range);
     PointsOf& copy = unpacked(range);
-    f(copy, Range{0, range.count});
+    f(copy, SlotRange{0, range.count});
     pack(copy, range);
   }
 
@@ -151,8 +151,8 @@ struct PointsOf {
   void copy_in_parts(F&& f) const {
     constexpr std::size_t slots_of_part = 4096;
     for (std::size_t first = 0; first < slots(); first += slots_of_part) {
-      const Range range{first, std::min(slots_of_part, slots() - first)};
-      f(first, unpacked(range), Range{0, range.count});
+      const SlotRange range{first, std::min(slots_of_part, slots() - first)};
+      f(first, unpacked(range), SlotRange{0, range.count});
     }
   }
 
@@ -164,8 +164,8 @@ struct PointsOf {
   void append(std::size_t f, double value);
 
  private:
-  PointsOf& unpacked(const Range& range) const;  ///< one copy per thread
-  void pack(const PointsOf& copy, const Range& range);
+  PointsOf& unpacked(const SlotRange& range) const;  ///< one copy per thread
+  void pack(const PointsOf& copy, const SlotRange& range);
   static constexpr std::array<std::size_t, dim == 2 ? 3 : 6> whole_stress() {
     constexpr std::size_t s = At::stress;
     if constexpr (dim == 2)

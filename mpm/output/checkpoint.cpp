@@ -3,7 +3,7 @@
 
 #include <bit>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <hdf5.h>
 
 #include "io/atomic_file.hpp"
@@ -136,7 +136,7 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   std::vector<std::int64_t> blocks;
   for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
     blocks.insert(blocks.end(), pb.at.begin(), pb.at.end());
-    for (const Range& range : pb.range) {
+    for (const SlotRange& range : pb.range) {
       blocks.push_back(static_cast<std::int64_t>(range.begin));
       blocks.push_back(static_cast<std::int64_t>(range.count));
     }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "mpm/output/deposit.hpp"
 #include "mpm/output/rest_pressure.hpp"

@@ -5,7 +5,7 @@
 namespace repose::mpm {
 
 template <class Kernel>
-void body_force_to_tile(const PointSet& points, const Range& range, std::span<const double> ax,
+void body_force_to_tile(const PointSet& points, const SlotRange& range, std::span<const double> ax,
                         std::span<const double> ay, double h, std::array<int, 2> origin,
                         Tile& tile) {
   for (std::size_t k = 0; k < range.count; ++k) {
@@ -31,10 +31,10 @@ void body_force_to_tile(const PointSet& points, const Range& range, std::span<co
   }
 }
 
-#define REPOSE_BODY_FORCE(KERNEL)                                                                  \
-  template void body_force_to_tile<KERNEL>(const PointSet&, const Range&, std::span<const double>, \
-                                           std::span<const double>, double, std::array<int, 2>,    \
-                                           Tile&);
+#define REPOSE_BODY_FORCE(KERNEL)                                                            \
+  template void body_force_to_tile<KERNEL>(const PointSet&, const SlotRange&,                \
+                                           std::span<const double>, std::span<const double>, \
+                                           double, std::array<int, 2>, Tile&);
 REPOSE_BODY_FORCE(CubicKernel)
 REPOSE_BODY_FORCE(QuadraticKernel)
 REPOSE_BODY_FORCE(SplineGradient<CubicKernel>)

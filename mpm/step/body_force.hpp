@@ -11,7 +11,7 @@ namespace repose::mpm {
 /// Adds the force of the accelerations (ax, ay), one per point of the range, to the tile of its
 /// block. `origin` is the index of the tile's first node.
 template <class Kernel>
-void body_force_to_tile(const PointSet& points, const Range& range, std::span<const double> ax,
+void body_force_to_tile(const PointSet& points, const SlotRange& range, std::span<const double> ax,
                         std::span<const double> ay, double h, std::array<int, 2> origin,
                         Tile& tile);
 

@@ -12,7 +12,7 @@ typename Simulation::Impl<dim>::Energies Simulation::Impl<dim>::energies() {
   std::vector<double> stored;
   for (PointsOf<dim>& points : bodies) {
     stored.resize(padded(points.slots()));
-    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const SlotRange& range) {
       part.material->stored_energy(part.batch(range), stored.data() + first);
     });
     for (std::size_t s = 0; s < points.slots(); ++s) {
@@ -75,7 +75,7 @@ void Simulation::Impl<dim>::remove_outflow() {
                                std::to_string(points.id[s]) + " has no finite position");
       if (stored.empty()) {
         stored.resize(padded(points.slots()));
-        points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+        points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const SlotRange& range) {
           part.material->stored_energy(part.batch(range), stored.data() + first);
         });
       }

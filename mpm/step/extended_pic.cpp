@@ -7,8 +7,8 @@
 namespace repose::mpm {
 
 template <class Kernel>
-void through_points(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    const VelocityTile& there, Tile& back) {
+void through_points(const PointSet& points, const SlotRange& range, double h,
+                    std::array<int, 2> origin, const VelocityTile& there, Tile& back) {
   const Pack inv_h(1.0 / h);
   const Pack x_0(static_cast<double>(origin[0]));
   const Pack y_0(static_cast<double>(origin[1]));
@@ -54,9 +54,9 @@ void through_points(const PointSet& points, const Range& range, double h, std::a
   }
 }
 
-template void through_points<CubicKernel>(const PointSet&, const Range&, double, std::array<int, 2>,
-                                          const VelocityTile&, Tile&);
-template void through_points<QuadraticKernel>(const PointSet&, const Range&, double,
+template void through_points<CubicKernel>(const PointSet&, const SlotRange&, double,
+                                          std::array<int, 2>, const VelocityTile&, Tile&);
+template void through_points<QuadraticKernel>(const PointSet&, const SlotRange&, double,
                                               std::array<int, 2>, const VelocityTile&, Tile&);
 
 template <>
@@ -82,7 +82,7 @@ void Simulation::Impl<2>::extend_velocity() {
       back[T_PX].fill(0.0);
       back[T_PY].fill(0.0);
       for (std::size_t b = 0; b < bodies.size(); ++b)
-        bodies[b].read(pb.range[b], [&](const PointSet& points, const Range& range) {
+        bodies[b].read(pb.range[b], [&](const PointSet& points, const SlotRange& range) {
           if (scene.kernel == mpm::Kernel::cubic)
             mpm::through_points<CubicKernel>(points, range, grid.h(), tile_origin(pb), there, back);
           else

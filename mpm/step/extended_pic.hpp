@@ -38,7 +38,7 @@ namespace repose::mpm {
 /// m_p Σ w v_i to the tile's channels T_PX and T_PY, which it adds to. `origin` is the index of
 /// both tiles' first node.
 template <class Kernel>
-void through_points(const PointSet& points, const Range& range, double h, std::array<int, 2> origin,
-                    const VelocityTile& there, Tile& back);
+void through_points(const PointSet& points, const SlotRange& range, double h,
+                    std::array<int, 2> origin, const VelocityTile& there, Tile& back);
 
 }  // namespace repose::mpm

@@ -1,6 +1,6 @@
 /// G2P: the points of every block take the grid's velocities, move, and update their stress.
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "mpm/grid/block_loops.hpp"
 #include "mpm/grid/tile_exchange.hpp"
@@ -92,7 +92,7 @@ void Simulation::Impl<dim>::advance_block(std::size_t block, double dt, const Re
     MotionOf<dim> motion;
     for (std::size_t i = 0; i < dim; ++i) motion.v[i] = scratch.data() + i * n;
     motion.elastic = scratch.data() + dim * n;
-    bodies[b].update(pb.range[b], [&](PointsOf<dim>& points, const Range& range) {
+    bodies[b].update(pb.range[b], [&](PointsOf<dim>& points, const SlotRange& range) {
       tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, keep, points,
                                               motion);
       move(points, range, motion, dt, sums);
@@ -102,7 +102,7 @@ void Simulation::Impl<dim>::advance_block(std::size_t block, double dt, const Re
 }
 
 template <int dim>
-void Simulation::Impl<dim>::move(PointsOf<dim>& points, const Range& range,
+void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
                                  const MotionOf<dim>& motion, double dt, BlockSums& sums) const {
   // a closed wall is never crossed: the interpolated velocity vanishes on it, and what round-off or
   // an impact faster than one cell per step does is undone here and counted
@@ -146,7 +146,7 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const Range& range,
 }
 
 template <int dim>
-void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, const Range& range,
+void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, const SlotRange& range,
                                    const MotionOf<dim>& motion, double dt, double* scratch,
                                    BlockSums& sums) const {
   using F = Layout<dim>;
@@ -220,7 +220,7 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
 }
 
 template <int dim>
-void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const Range& range,
+void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange& range,
                                    const typename PointsOf<dim>::Batch& batch,
                                    const MotionOf<dim>& motion, BlockSums& sums) const {
   using F = Layout<dim>;

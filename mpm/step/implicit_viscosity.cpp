@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "mpm/step/simulation_impl.hpp"
 
@@ -16,7 +16,7 @@ constexpr int most_search_steps = 30;
 
 }  // namespace
 
-void split_stress(PointSet& points, const Range& range, const Batch& batch) {
+void split_stress(PointSet& points, const SlotRange& range, const Batch& batch) {
   double* const minus_p = points.data(points.force_stress[0]);
   for (std::size_t k = 0; k < range.count; ++k) {
     const std::size_t s = range.begin + k;

@@ -30,7 +30,7 @@ struct ViscousEffect {
 
 /// Stores −p where the explicit forces read it, and the work of the step with the viscous stress at
 /// its end: −½(p_n + p_{n+1}) tr Δε + s_{n+1}:Δε.
-void split_stress(PointSet& points, const Range& range, const Batch& batch);
+void split_stress(PointSet& points, const SlotRange& range, const Batch& batch);
 
 class ImplicitViscosity {
  public:

@@ -1,6 +1,6 @@
 #include "mpm/step/ledger.hpp"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "mpm/step/simulation_impl.hpp"
 

@@ -18,7 +18,7 @@ void Simulation::Impl<dim>::transfer_to_tile(std::size_t block) {
   static thread_local AlignedVector<double> values;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (pb.range[b].count == 0) continue;
-    bodies[b].read(pb.range[b], [&](PointsOf<dim>& points, const Range& range) {
+    bodies[b].read(pb.range[b], [&](PointsOf<dim>& points, const SlotRange& range) {
       if constexpr (has_extra) values.resize(std::max(values.size(), padded(range.count)));
       if constexpr (extra == Extra::elastic)
         points.material->elastic_volume_strain(points.batch(range), values.data());
@@ -34,7 +34,7 @@ void Simulation::Impl<dim>::transfer_to_tile(std::size_t block) {
 }
 
 template <int dim>
-void Simulation::Impl<dim>::square_signals(PointsOf<dim>& points, const Range& range,
+void Simulation::Impl<dim>::square_signals(PointsOf<dim>& points, const SlotRange& range,
                                            double* signal2) {
   using F = Layout<dim>;
   points.material->modulus(points.batch(range), signal2);
@@ -52,7 +52,7 @@ void Simulation::Impl<dim>::square_signals(PointsOf<dim>& points, const Range& r
 
 template <>
 template <class Kernel>
-void Simulation::Impl<2>::prescribed_force_to_tile(const PointSet& points, const Range& range,
+void Simulation::Impl<2>::prescribed_force_to_tile(const PointSet& points, const SlotRange& range,
                                                    std::array<int, 2> origin, Tile& tile) const {
   const std::size_t n = range.count;
   static thread_local std::vector<double> scratch;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <tbb/info.h>
 
 #include "mpm/scene/fill.hpp"
@@ -108,7 +108,7 @@ Signals Simulation::Impl<dim>::initial_signals() const {
   std::vector<double> modulus, viscosity, zero;
   for (const PointsOf<dim>& points : bodies) {
     // the viscosity at rest comes with an update, which must not count
-    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const Range& range) {
+    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const SlotRange& range) {
       const std::size_t n = padded(range.count);
       modulus.resize(n);
       zero.assign(n, 0.0);

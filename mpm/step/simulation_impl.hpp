@@ -105,23 +105,23 @@ class Simulation::Impl {
   template <class Kernel, bool affine, Extra extra>
   void transfer_to_tile(std::size_t block);
   void transfer_to_tile(std::size_t block, Extra extra);
-  static void square_signals(PointsOf<dim>& points, const Range& range, double* signal2);
+  static void square_signals(PointsOf<dim>& points, const SlotRange& range, double* signal2);
   template <class Kernel>
-  void prescribed_force_to_tile(const PointSet& points, const Range& range,
+  void prescribed_force_to_tile(const PointSet& points, const SlotRange& range,
                                 std::array<int, 2> origin, Tile& tile) const;
   template <class Kernel, Keeps keeps, bool averages>
   void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
-  void move(PointsOf<dim>& points, const Range& range, const MotionOf<dim>& motion, double dt,
+  void move(PointsOf<dim>& points, const SlotRange& range, const MotionOf<dim>& motion, double dt,
             BlockSums& sums) const;
   /// Arrays of a range's length: velocity and mean elastic strain (Motion), and in strain() a
   /// strain, a spin, work, modulus, viscosity and pressure.
   static constexpr std::size_t scratch_arrays =
       dim + 1 + Layout<dim>::components + (dim == 2 ? 1 : 3) + 4;
   /// Brings a range's stress to the end of the step.
-  void strain(PointsOf<dim>& points, std::size_t body, const Range& range,
+  void strain(PointsOf<dim>& points, std::size_t body, const SlotRange& range,
               const MotionOf<dim>& motion, double dt, double* scratch, BlockSums& sums) const;
   /// Adds a range's energies, work, power and signals after its update.
-  void sum_up(const PointsOf<dim>& points, const Range& range,
+  void sum_up(const PointsOf<dim>& points, const SlotRange& range,
               const typename PointsOf<dim>::Batch& batch, const MotionOf<dim>& motion,
               BlockSums& sums) const;
   /// The fields of the stress that gives the explicit forces, as in Sym.

@@ -107,7 +107,7 @@ void Simulation::Impl<dim>::put_to_sleep(std::size_t block) {
   pb.rest.signals = sums.signals;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     PointsOf<dim>& points = bodies[b];
-    const Range& range = pb.range[b];
+    const SlotRange& range = pb.range[b];
     const auto stop = [&](std::size_t f) {
       for (std::size_t s = range.begin; s < range.begin + padded(range.count); ++s)
         points.set(f, s, 0.0);

@@ -152,7 +152,7 @@ const Pack& derivative(const SpaceMoments& m) {
 }  // namespace
 
 template <class Kernel, bool affine, bool averages, int dim>
-void points_to_tile(const PointsOf<dim>& points, const Range& range, double h,
+void points_to_tile(const PointsOf<dim>& points, const SlotRange& range, double h,
                     const std::array<int, Shape<dim>::axes>& origin, const double* elastic,
                     TileOf<dim>& tile) {
   using F = Layout<dim>;
@@ -242,8 +242,9 @@ void points_to_tile(const PointsOf<dim>& points, const Range& range, double h,
 
 template <class Kernel, Keeps keeps, bool averages, int dim>
 void tile_to_points(const VelocityTileOf<dim>& tile,
-                    const std::array<int, Shape<dim>::axes>& origin, double h, const Range& range,
-                    const Retention& keep, PointsOf<dim>& points, const MotionOf<dim>& motion) {
+                    const std::array<int, Shape<dim>::axes>& origin, double h,
+                    const SlotRange& range, const Retention& keep, PointsOf<dim>& points,
+                    const MotionOf<dim>& motion) {
   using F = Layout<dim>;
   const Pack inv_h(1.0 / h);
   const Pack inv_D_h(Kernel::gradient_scale / h);
@@ -295,14 +296,14 @@ void tile_to_points(const VelocityTileOf<dim>& tile,
   }
 }
 
-#define REPOSE_FROM_TILE(KERNEL, KEEPS, AVERAGES, DIM)                               \
-  template void tile_to_points<KERNEL, Keeps::KEEPS, AVERAGES, DIM>(                 \
-      const VelocityTileOf<DIM>&, const std::array<int, DIM>&, double, const Range&, \
+#define REPOSE_FROM_TILE(KERNEL, KEEPS, AVERAGES, DIM)                                   \
+  template void tile_to_points<KERNEL, Keeps::KEEPS, AVERAGES, DIM>(                     \
+      const VelocityTileOf<DIM>&, const std::array<int, DIM>&, double, const SlotRange&, \
       const Retention&, PointsOf<DIM>&, const MotionOf<DIM>&);
-#define REPOSE_TO_TILE(KERNEL, AFFINE, AVERAGES, DIM)                                              \
-  template void points_to_tile<KERNEL, AFFINE, AVERAGES, DIM>(const PointsOf<DIM>&, const Range&,  \
-                                                              double, const std::array<int, DIM>&, \
-                                                              const double*, TileOf<DIM>&);
+#define REPOSE_TO_TILE(KERNEL, AFFINE, AVERAGES, DIM)                                             \
+  template void points_to_tile<KERNEL, AFFINE, AVERAGES, DIM>(                                    \
+      const PointsOf<DIM>&, const SlotRange&, double, const std::array<int, DIM>&, const double*, \
+      TileOf<DIM>&);
 #define REPOSE_TRANSFERS(KERNEL, AVERAGES, DIM)                  \
   REPOSE_TO_TILE(KERNEL, true, AVERAGES, DIM)                    \
   REPOSE_TO_TILE(KERNEL, false, AVERAGES, DIM)                   \

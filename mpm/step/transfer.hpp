@@ -40,7 +40,7 @@ enum class Keeps : std::uint8_t { nothing, velocity, velocity_and_gradient, exte
 /// node. The momentum is that before forces; forces are kept apart for the energy ledger.
 /// `averages`: `elastic`, the range's elastic volume strains, go along; else it is not read.
 template <class Kernel, bool affine, bool averages, int dim>
-void points_to_tile(const PointsOf<dim>& points, const Range& range, double h,
+void points_to_tile(const PointsOf<dim>& points, const SlotRange& range, double h,
                     const std::array<int, Shape<dim>::axes>& origin, const double* elastic,
                     TileOf<dim>& tile);
 
@@ -66,7 +66,8 @@ using Motion = MotionOf<2>;
 /// like points. Where nothing is kept, u is not read.
 template <class Kernel, Keeps keeps, bool averages, int dim>
 void tile_to_points(const VelocityTileOf<dim>& tile,
-                    const std::array<int, Shape<dim>::axes>& origin, double h, const Range& range,
-                    const Retention& keep, PointsOf<dim>& points, const MotionOf<dim>& motion);
+                    const std::array<int, Shape<dim>::axes>& origin, double h,
+                    const SlotRange& range, const Retention& keep, PointsOf<dim>& points,
+                    const MotionOf<dim>& motion);
 
 }  // namespace repose::mpm

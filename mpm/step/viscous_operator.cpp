@@ -70,7 +70,7 @@ void ViscousOperator::place_points(std::size_t block) {
   for (BodyPoints& body : bodies_) {
     if (body.points == nullptr) continue;
     const PointSet& points = *body.points;
-    const Range& range = pb.range[body_index(body)];
+    const SlotRange& range = pb.range[body_index(body)];
     for (std::size_t s = range.begin; s < range.begin + range.count; ++s) {
       PointData& point = body.data[s];
       const double x = points[X][s] * inv_h;
@@ -206,7 +206,7 @@ void ViscousOperator::evaluate_law(std::size_t block) {
   static thread_local std::vector<double> scratch;
   for (BodyPoints& body : bodies_) {
     if (body.points == nullptr) continue;
-    const Range& range = grid_->point_blocks[block].range[body_index(body)];
+    const SlotRange& range = grid_->point_blocks[block].range[body_index(body)];
     if (range.count == 0) continue;
     const std::size_t n = padded(range.count);
     scratch.assign(6 * n, 0.0);
@@ -220,7 +220,7 @@ void ViscousOperator::evaluate_law(std::size_t block) {
       D[1][k] = strain[1];
       D[3][k] = 0.5 * strain[2];
     }
-    body.points->read(range, [&](PointSet& points, const Range& there) {
+    body.points->read(range, [&](PointSet& points, const SlotRange& there) {
       Batch batch = points.batch(there);
       batch.dt = 1.0;
       batch.strain = {D[0], D[1], D[2], D[3]};
@@ -260,7 +260,7 @@ void ViscousOperator::state_of_points() {
     for (BodyPoints& body : bodies_) {
       if (body.points == nullptr) continue;
       const PointSet& points = *body.points;
-      const Range& range = grid_->point_blocks[k].range[body_index(body)];
+      const SlotRange& range = grid_->point_blocks[k].range[body_index(body)];
       for (std::size_t s = range.begin; s < range.begin + range.count; ++s)
         body.data[s].strain = {points[LXX][s], points[LYY][s], points[LXY][s] + points[LYX][s]};
     }

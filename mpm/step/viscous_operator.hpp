@@ -87,7 +87,7 @@ class ViscousOperator {
   void for_points(std::size_t block, F&& f) {
     for (BodyPoints& body : bodies_) {
       if (body.points == nullptr) continue;
-      const Range& range = grid_->point_blocks[block].range[body_index(body)];
+      const SlotRange& range = grid_->point_blocks[block].range[body_index(body)];
       for (std::size_t s = range.begin; s < range.begin + range.count; ++s) f(body.data[s]);
     }
   }
