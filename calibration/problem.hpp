@@ -17,8 +17,8 @@ namespace repose::calibration {
 /// r(z), layout: per fitted target its channels' rows and one penalty row, then the priors.
 struct Evaluation {
   Eigen::VectorXd r;
-  Eigen::MatrixXd J;    ///< empty unless asked for
-  bool failed = false;  ///< a path broke off; r is finite all the same
+  Eigen::MatrixXd J;         ///< empty unless asked for
+  bool failed = false;       ///< a path broke off; r is finite all the same
   double objective() const;  ///< ½ r·r, from one place: to the same last bit for everybody
 };
 
