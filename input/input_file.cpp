@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cerrno>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <tuple>
 
@@ -186,15 +187,59 @@ InputFile InputFile::parse(std::string_view text, std::string name,
   const Origin top{input.name_, 1, 1};
   input.origins_[""] = top;
   input.note_origins(input.root_, "", top);
-  for (const std::string& one : overrides) input.override_with(one);
+  for (const std::string& one : overrides) {
+    // law.M changes the law of another file; law itself stands in for it
+    if (one.find("law.") < one.find('=')) input.take_laws_over();
+    input.override_with(one);
+  }
+  input.take_laws_over();
   return input;
+}
+
+void InputFile::take_laws_over() {
+  take_law_over(root_, "law");
+  if (toml::array* bodies = root_["body"].as_array())
+    for (std::size_t i = 0; i < bodies->size(); ++i)
+      if (toml::table* body = bodies->get(i)->as_table())
+        take_law_over(*body, fmt::format("body[{}].law", i));
+}
+
+void InputFile::take_law_over(toml::table& parent, const std::string& path) {
+  const std::optional<std::string> named = parent["law"].value<std::string>();
+  if (!named || !named->ends_with(".toml")) return;
+  const Origin here = origin(path);
+  const auto refuse = [&](std::string_view why) {
+    throw BadInput({fmt::format("{}: {}", to_string(here), why)});
+  };
+  const fs::path file =
+      here.is_override() ? fs::path(*named) : fs::path(here.source).parent_path() / *named;
+  toml::table other;
+  try {
+    other = toml::parse(read_text(file), file.string());
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw BadInput({fmt::format("{}: {}", to_string(Origin{file.string(), at.line, at.column}),
+                                error.description())});
+  } catch (const io::IoError& error) {
+    refuse(error.what());
+  }
+  const toml::table* law = other["law"].as_table();
+  if (law == nullptr)
+    refuse(fmt::format("{} has no [law] table to take over; the fitted.toml of a fit has one",
+                       file.string()));
+  const toml::source_position at = law->source().begin;
+  const Origin there{file.string(), at.line, at.column};
+  origins_[path] = there;
+  note_origins(*law, path, there);
+  parent.insert_or_assign("law", *law);
 }
 
 void InputFile::note_origins(const toml::table& table, const std::string& path,
                              const Origin& around) {
   for (const auto& [key, node] : table) {
     const toml::source_position at = key.source().begin;
-    const Origin here = around.is_override() || !at ? around : Origin{name_, at.line, at.column};
+    const Origin here =
+        around.is_override() || !at ? around : Origin{around.source, at.line, at.column};
     const std::string child = join_path(path, key.str());
     origins_[child] = here;
     note_origins(node, child, here);
@@ -209,7 +254,8 @@ void InputFile::note_origins(const toml::node& node, const std::string& path,
     for (std::size_t i = 0; i < list->size(); ++i) {
       const toml::node& entry = *list->get(i);
       const toml::source_position at = entry.source().begin;
-      const Origin here = around.is_override() || !at ? around : Origin{name_, at.line, at.column};
+      const Origin here =
+          around.is_override() || !at ? around : Origin{around.source, at.line, at.column};
       const std::string child = fmt::format("{}[{}]", path, i);
       origins_[child] = here;
       note_origins(entry, child, here);

@@ -46,6 +46,9 @@ class BadInput : public std::runtime_error {
 /// throw_if_bad() ends it.
 class InputFile {
  public:
+  /// A law may stand in another file, law = "fitted.toml": its [law] table takes that place, a path
+  /// being relative to the file that names it, or to where the command runs if --set does.
+  ///
   /// Reads a file and applies the overrides ("grid.h=0.0125", in order). A value is TOML; a bare
   /// word counts as a string, so that quotes need not be protected from the shell.
   /// Errors: io::IoError if it cannot be read; BadInput for broken TOML or overrides.
@@ -88,6 +91,8 @@ class InputFile {
   void note_origins(const toml::table& table, const std::string& path, const Origin& around);
   void note_origins(const toml::node& node, const std::string& path, const Origin& around);
   void override_with(const std::string& text);
+  void take_laws_over();
+  void take_law_over(toml::table& parent, const std::string& path);
   void find_unknown(const toml::table& table, const std::string& path);
   void find_unknown(const toml::node& node, const std::string& path);
   std::string advice(std::string_view table_path, std::string_view key) const;

@@ -306,8 +306,13 @@ std::vector<KeyInfo> point_test_infos() {
   TestTable test;
   point::Settings settings;
   return describe_keys([&](Keys& keys) {
-    keys.table({"law", "-", "the constitutive law", {}, required},
-               [&](Keys& below) { law_keys(below, law); });
+    keys.table(
+        {"law",
+         "-",
+         "the constitutive law; or a file with a [law] table, as a fit leaves it: \"fitted.toml\"",
+         {},
+         required},
+        [&](Keys& below) { law_keys(below, law); });
     keys.table({"initial", "-", "the state at the start"},
                [&](Keys& below) { initial_keys(below, initial); });
     keys.table({"test", "-", "the path", {}, required},

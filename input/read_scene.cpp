@@ -209,8 +209,13 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
   keys.table({"initial", "-", "the state at the start"},
              [&](Keys& below) { body_initial_keys(below, body); });
-  keys.table({"law", "-", "the constitutive law", {}, required},
-             [&](Keys& below) { law_keys(below, body.law); });
+  keys.table(
+      {"law",
+       "-",
+       "the constitutive law; or a file with a [law] table, as a fit leaves it: \"fitted.toml\"",
+       {},
+       required},
+      [&](Keys& below) { law_keys(below, body.law); });
 }
 
 void grid_keys(Keys& keys, mpm::Scene& scene) {

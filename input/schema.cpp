@@ -81,7 +81,8 @@ Json object(const std::vector<KeyInfo>& keys, bool open) {
   return json;
 }
 
-/// A table, or where its keys depend on what `name` says (a law), one of several.
+/// A table, or where its keys depend on what `name` says (a law), one of several, or a file that
+/// has one.
 Json table_schema(const KeyInfo& table) {
   if (table.below.size() != 1 || !table.below.front().name.empty())
     return object(table.below, table.open);
@@ -92,6 +93,7 @@ Json table_schema(const KeyInfo& table) {
     json["required"] = {"name"};
     forms.push_back(json);
   }
+  forms.push_back({{"type", "string"}, {"pattern", "\\.toml$"}});
   return {{"anyOf", forms}};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// Inputs that the program holds: the scenes of data/scenes, and the set of charts of `repose chart
-/// all`.
+/// Inputs that the program holds: the scenes of data/scenes, the point tests of data/experiments,
+/// and the set of charts of `repose chart all`.
 
 #include "input/input_file.hpp"
 
@@ -10,9 +10,14 @@ namespace repose::input {
 /// Their names: "flat_mu_i", ...
 std::vector<std::string_view> shipped_scenes();
 
-/// A shipped scene by its name, or a file. Errors: those of InputFile; for a name that is neither,
-/// BadInput with the nearest one.
+std::vector<std::string_view> shipped_tests();
+
+/// A shipped scene or test by its name, or a file. Errors: those of InputFile; for a name that is
+/// neither, BadInput with the nearest one.
 InputFile open_scene(const std::string& name_or_file, std::span<const std::string> overrides = {});
+InputFile open_test(const std::string& name_or_file, std::span<const std::string> overrides = {});
+/// Either of them, as `repose check` takes it.
+InputFile open_input(const std::string& name_or_file, std::span<const std::string> overrides = {});
 
 /// data/charts/all.toml as it was built in.
 std::string_view shipped_chart_set();

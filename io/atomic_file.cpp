@@ -79,7 +79,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& path) {
   return path.parent_path() / ("." + path.filename().string() + ".repose-part");
 }
 
-void write_atomically(const std::filesystem::path& path, std::string_view content) {
+void write_atomically(const std::filesystem::path& path, std::string_view content,
+                      Outlives outlives) {
   refuse_special_file(path);
   const std::filesystem::path part = temporary_name(path);
   // O_NOFOLLOW: a link planted under the temporary name must not lead the write elsewhere.
@@ -87,14 +88,14 @@ void write_atomically(const std::filesystem::path& path, std::string_view conten
   if (fd.get() < 0) throw IoError(path, "cannot create the file", errno);
 
   int error = write_fully(fd.get(), content);
-  if (error == 0) error = flush_to_disk(fd.get());
+  if (error == 0 && outlives == Outlives::power_cut) error = flush_to_disk(fd.get());
   if (fd.close() != 0 && error == 0) error = errno;
   if (error == 0 && ::rename(part.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {
     ::unlink(part.c_str());
     throw IoError(path, "cannot write", error);
   }
-  flush_folder(path.parent_path());
+  if (outlives == Outlives::power_cut) flush_folder(path.parent_path());
 }
 
 }  // namespace repose::io

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -23,13 +24,18 @@ class IoError : public std::runtime_error {
   std::string reason_;
 };
 
+/// What a file that was written outlives. A power cut costs two fsyncs, some 10 ms: too much for
+/// what can be made again in less.
+enum class Outlives : std::uint8_t { power_cut, kill };
+
 /// Writes a file that is whole or not there: the content goes to a hidden temporary name in the
-/// same folder, to the disk (fsync), and is then renamed over `path`. An older file of that name
-/// stays untouched until the rename and survives any failure; the temporary never stays behind
-/// unless the process is killed (temporary_name() says which file that would be).
-/// A link of that name is replaced, not followed. content: bytes, of any length.
+/// same folder, to the disk (fsync) if it is to outlive a power cut, and is then renamed over
+/// `path`. An older file of that name stays untouched until the rename and survives any failure;
+/// the temporary never stays behind unless the process is killed (temporary_name() says which file
+/// that would be). A link of that name is replaced, not followed. content: bytes, of any length.
 /// Errors: IoError; a folder, device or pipe of that name is one.
-void write_atomically(const std::filesystem::path& path, std::string_view content);
+void write_atomically(const std::filesystem::path& path, std::string_view content,
+                      Outlives outlives = Outlives::power_cut);
 
 /// The name under which write_atomically(path) writes: ".NAME.repose-part" beside path.
 std::filesystem::path temporary_name(const std::filesystem::path& path);

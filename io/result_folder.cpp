@@ -166,8 +166,9 @@ void ResultFolder::remove_old_outputs() const {
   remove_frames(frames());
 }
 
-void ResultFolder::write_file(std::string_view name, std::string_view content) const {
-  write_atomically(file(name), content);
+void ResultFolder::write_file(std::string_view name, std::string_view content,
+                              Outlives outlives) const {
+  write_atomically(file(name), content, outlives);
 }
 
 RowWriter::RowWriter(fs::path path, std::size_t columns, int fd)

@@ -35,7 +35,8 @@ class ResultFolder {
   static std::span<const std::string_view> output_names();
 
   /// Writes folder/name as a whole or not at all (write_atomically).
-  void write_file(std::string_view name, std::string_view content) const;
+  void write_file(std::string_view name, std::string_view content,
+                  Outlives outlives = Outlives::power_cut) const;
 
  private:
   std::filesystem::path folder_;

@@ -140,7 +140,7 @@ io::ExitCode check_charts(const std::string& path, const CommonOptions& options)
 }
 
 io::ExitCode check_file(const std::string& path, const CommonOptions& options) {
-  input::InputFile input = input::open_scene(path, options.sets);
+  input::InputFile input = input::open_input(path, options.sets);
   if (input::is_chart_set(input)) return check_charts(path, options);
   switch (input::kind_of(input)) {
     case input::FileKind::scene:
@@ -167,7 +167,8 @@ Command add_check(CLI::App& root) {
       "  repose check data/charts/all.toml");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
-  verb.required("FILE.toml", *file, "Input file, or the name of a scene, as in flat_mu_i", "");
+  verb.required("FILE.toml", *file,
+                "Input file, or the name of a scene or point test, as in flat_mu_i", "");
   add_set(verb, *options);
   add_threads(verb, *options);
   add_quiet(verb, *options);

@@ -6,6 +6,7 @@
 
 #include "app/commands/command.hpp"
 #include "input/file_kind.hpp"
+#include "input/shipped_input.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/point_picture.hpp"
@@ -75,7 +76,7 @@ class PointRun {
  public:
   PointRun(const std::string& path, const CommonOptions& options)
       : options_(options),
-        input_(input::InputFile::read(path, options.sets)) {
+        input_(input::open_test(path, options.sets)) {
     input::require_kind(input_, input::FileKind::point_test, "point");
     file_ = input::read_point_test(input_);
     law_ = &find_law(file_.law);
@@ -92,14 +93,14 @@ class PointRun {
                                       : std::filesystem::path(options_.output));
     folder.remove_old_outputs();
     const toml::table input = resolved(input_, file_);
-    folder.write_file("input.toml", toml_text(input, origin_));
+    write(folder, "input.toml", toml_text(input, origin_));
     const study::Usage before = study::usage();
     const point::Outcome outcome = point::simulate(*law_, theta_, file_.test, curve_);
     const study::Usage after = study::usage();
     reason_ = point::explain(*law_, theta_, file_.test, curve_);
-    folder.write_file("curve.csv", csv());
+    write(folder, "curve.csv", csv());
     const Json report = summary(input, after.wall_s - before.wall_s, after.cpu_s - before.cpu_s);
-    folder.write_file("summary.json", report.dump(2) + "\n");
+    write(folder, "summary.json", report.dump(2) + "\n");
     draw(folder);
     if (!options_.quiet)
       for (const std::string& note : file_.notes) fmt::print(stderr, "warning: {}\n", note);
@@ -108,6 +109,12 @@ class PointRun {
   }
 
  private:
+  /// Not to the disk at once: the test is driven again in less time than that takes.
+  static void write(const io::ResultFolder& folder, std::string_view name,
+                    const std::string& content) {
+    folder.write_file(name, content, io::Outlives::kill);
+  }
+
   std::vector<double> column(point::Quantity quantity) const {
     std::vector<double> values;
     point::read_column(*law_, theta_, file_.test, curve_, quantity, values);
@@ -222,14 +229,15 @@ Command add_point(CLI::App& root) {
   Verb verb(root, "point", "Drive one material point along a path");
   verb.footer(
       "Examples:\n"
-      "  repose point data/experiments/weald_clay_undrained.toml\n"
-      "  repose point data/experiments/weald_clay_undrained.toml --set initial.ocr=8 -o "
-      "results/oc\n"
+      "  repose point weald_clay_undrained\n"
+      "  repose point weald_clay_undrained --set initial.ocr=8 -o results/oc\n"
+      "  repose point my_test.toml --set law=results/my_fit/fitted.toml\n"
       "Writes curve.csv, curve.svg, summary.json and input.toml. A path that cannot be finished\n"
       "leaves the part done and returns 3.");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
-  verb.required("TEST.toml", *file, "Point test", "TEXT");
+  verb.required("TEST.toml", *file,
+                fmt::format("A file, or one of {}", fmt::join(input::shipped_tests(), ", ")), "");
   verb.option("-o,--output", options->output, "Result folder (default: results/NAME)", "DIR");
   add_set(verb, *options);
   add_no_plot(verb, *options);
