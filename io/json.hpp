@@ -16,6 +16,13 @@
 
 namespace repose::io {
 
+/// A member of an object: a template, so that it may hold a value that holds members.
+template <class Value>
+struct JsonMember {
+  std::string key;
+  Value value;
+};
+
 /// A JSON value (RFC 8259). Members of an object keep the order in which they were added. Written
 /// as
 ///     Json{{"rows", 240}, {"columns", {"t", "q"}}, {"note", nullptr}}
@@ -24,7 +31,7 @@ namespace repose::io {
 /// nlohmann::json, whose headers cost more to compile than most files that need a summary.
 class Json {
  public:
-  struct Member;
+  using Member = JsonMember<Json>;
   using Array = std::vector<Json>;
   using Object = std::vector<Member>;
 
@@ -144,11 +151,6 @@ class Json {
   std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Array,
                Object>
       value_;
-};
-
-struct Json::Member {
-  std::string key;
-  Json value;
 };
 
 template <class T>

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/path_derivatives.hpp"
 #include "study/fit/twin.hpp"
 #include "tests/calibration/toy.hpp"
 
@@ -76,6 +77,32 @@ TEST(Gradient, IsExactThroughYieldForEveryParameterAndTheInitialState) {
     z << 0.41, 0.6, 0.45, 0.55, 0.48, 0.37, 0.52;
     expect_exact(problem, z, 3e-4, 1e-6, compression);
   }
+}
+
+// At ocr = 1, the least that is admissible, v = N − λ ln(ocr p/p_ref) + κ ln ocr has the slope κ −
+// λ.
+TEST(Gradient, IsOfSecondOrderAtABoundOfTheInitialState) {
+  const LawSpec spec{"modified_cam_clay",
+                     {{"compression", "v-ln_p"}},
+                     {{"M", 1.0}, {"lambda", 0.2}, {"kappa", 0.04}, {"nu", 0.3}, {"N", 3.0}}};
+  const LawInfo& law = find_law(spec);
+  std::vector<double> inputs = checked_parameters(spec);
+  const auto n = static_cast<int>(inputs.size());
+  inputs.resize(inputs.size() + initial_input_count, std::nan(""));
+  inputs[static_cast<std::size_t>(n + input_p)] = 1e5;
+  inputs[static_cast<std::size_t>(n + input_ocr)] = 1.0;
+  point::Stage stage;
+  stage.goal = point::Goal{point::Quantity::eps_a, 0.01};
+  point::PointTest test;
+  test.path = point::path_of({stage});
+  const std::array<int, 1> wanted{n + input_ocr};
+  const std::array<point::Quantity, 1> quantities{point::Quantity::v};
+  std::vector<Column> columns;
+  std::vector<int> legs;
+  simulate_with_derivatives(law, {}, inputs, wanted, test, quantities, columns, legs);
+  ASSERT_GT(columns[0].slope.rows(), 0);
+  // one-sided with h = 1e-5: h²/3 v′′′ = 1e-11, and 4 ε v/h = 2e-10; to first order h/2 v″ = 8e-7
+  EXPECT_NEAR(columns[0].slope(0, 0), 0.04 - 0.2, 1e-9);
 }
 
 TEST(Gradient, IsExactForTheFlowCurve) {
