@@ -228,11 +228,11 @@ TEST(ReadSceneErrors, the_least_and_the_most_that_make_sense) {
     const std::string text = problems(granular, {set});
     return text.find(set.substr(0, set.find('='))) != text.npos;
   };
-  for (const char* set : {"scene.tilt_deg=90", "scene.tilt_deg=-90", "scene.tilt_deg=120",
-                          "scene.end_time=0", "grid.h=0", "grid.h=-0.01", "step.courant=0",
+  for (const char* set : {"scene.tilt_deg=91", "scene.tilt_deg=-91", "scene.tilt_deg=120",
+                          "scene.end_time=-1", "grid.h=0", "grid.h=-0.01", "step.courant=0",
                           "step.courant=1.41", "body[0].law.mu_0=-0.1", "body[0].law.K=0"})
     EXPECT_TRUE(refused(set)) << set << ": " << problems(granular, {set});
-  for (const char* set : {"scene.tilt_deg=89", "scene.tilt_deg=-89", "step.courant=1.4"})
+  for (const char* set : {"scene.tilt_deg=90", "scene.tilt_deg=-90", "step.courant=1.4"})
     EXPECT_EQ(problems(granular, {set}), "") << set;
 }
 
