@@ -174,7 +174,12 @@ TEST(KeyTable, EverySceneKeyIsReadWrittenOutAndReadBack) {
   for (const std::string& text : scenes()) {
     const std::string once = resolved(text);
     EXPECT_EQ(resolved(once), once) << "what was written out reads as something else";
-    for (const std::string& key : keys_in(text)) seen.insert(without_positions(key));
+    for (const std::string& key : keys_in(text)) {
+      const std::string name = without_positions(key);
+      EXPECT_TRUE(infos.contains(name) || name.find(".law.") != std::string::npos)
+          << name << " is read and in no key table";
+      seen.insert(name);
+    }
     for (const std::string& key : keys_in(once)) {
       const std::string name = without_positions(key);
       EXPECT_TRUE(infos.contains(name) || name.find(".law.") != std::string::npos)

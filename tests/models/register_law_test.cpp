@@ -3,6 +3,8 @@
 
 #include <thread>
 
+#include <gtest/gtest.h>
+
 #include "models/all_laws.hpp"
 #include "models/newtonian.hpp"
 

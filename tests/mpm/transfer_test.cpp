@@ -54,7 +54,7 @@ template <class K>
 void gather(const VelocityTile& tile, PointSet& points) {
   AlignedVector<double> vx(padded(points.count)), vy(padded(points.count));
   tile_to_points<K, Keeps::nothing, false>(tile, origin, h, {0, points.count}, Retention{}, points,
-                                           {vx.data(), vy.data()});
+                                           {{vx.data(), vy.data()}});
   for (std::size_t s = 0; s < points.count; ++s) {
     EXPECT_EQ(vx[s], points[VX][s]);
     EXPECT_EQ(vy[s], points[VY][s]);
