@@ -101,10 +101,10 @@ class PointRun {
     write(folder, "curve.csv", csv());
     const Json report = summary(input, after.wall_s - before.wall_s, after.cpu_s - before.cpu_s);
     write(folder, "summary.json", report.dump(2) + "\n");
-    draw(folder);
+    const bool drawn = draw(folder);
     if (!options_.quiet)
       for (const std::string& note : file_.notes) fmt::print(stderr, "warning: {}\n", note);
-    tell(folder, report);
+    tell(folder, report, drawn);
     return point::is_failure(outcome.status) ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
@@ -185,19 +185,22 @@ class PointRun {
     s["q_max_Pa"] = finite_or_null(*std::max_element(q.begin(), q.end()));
   }
 
-  /// A picture that cannot be drawn is a warning, not a failure: the figures are in curve.csv.
-  void draw(const io::ResultFolder& folder) const {
-    if (options_.no_plot || curve_.rows.empty()) return;
+  /// Whether there is one. A picture that cannot be drawn is a warning, not a failure: the figures
+  /// are in curve.csv.
+  bool draw(const io::ResultFolder& folder) const {
+    if (options_.no_plot || curve_.rows.empty()) return false;
     try {
       report::point_picture(file_, theta_, curve_).render_svg(folder.file("curve.svg"));
+      return true;
     } catch (const report::PlotError& error) {
       fmt::print(stderr, "warning: no curve.svg: {}\n", error.what());
     } catch (const std::logic_error& error) {
       fmt::print(stderr, "warning: no curve.svg: {}\n", error.what());
     }
+    return false;
   }
 
-  void tell(const io::ResultFolder& folder, const Json& report) const {
+  void tell(const io::ResultFolder& folder, const Json& report, bool drawn) const {
     const bool failed = point::is_failure(curve_.outcome.status);
     if (failed) fmt::print(stderr, "{}: {}\n", input_.name(), reason_);
     if (options_.json) {
@@ -205,11 +208,10 @@ class PointRun {
       for (const char* key : {"status", "reason", "rows", "wall_s"}) line[key] = report[key];
       fmt::print("{}\n", line.dump());
     } else if (!options_.quiet) {
-      fmt::print(
-          "{}: {} rows by {} in {:.3g} ms{}; {}\n", folder.path().string(), curve_.rows.size(),
-          report["method"].get<std::string>(), 1e3 * report["wall_s"].get<double>(),
-          failed ? "" : ", " + reason_,
-          options_.no_plot ? "curve.csv, summary.json" : "curve.csv, curve.svg, summary.json");
+      fmt::print("{}: {} rows by {} in {:.3g} ms{}; {}\n", folder.path().string(),
+                 curve_.rows.size(), report["method"].get<std::string>(),
+                 1e3 * report["wall_s"].get<double>(), failed ? "" : ", " + reason_,
+                 drawn ? "curve.csv, curve.svg, summary.json" : "curve.csv, summary.json");
     }
   }
 

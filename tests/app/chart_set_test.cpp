@@ -273,7 +273,7 @@ TEST(ExactFlows, GrainsTendToBagnoldsFlow) {
   const double U = study::bagnold_speed(layer);
   EXPECT_NEAR(U, 0.2746, 1e-4);
   std::array<double, 2> error{};
-  for (const std::size_t k : {0, 1}) {
+  for (const std::size_t k : {0U, 1U}) {
     const study::LayerMeans late = study::starting_flow(layer, 1.0, 16, 50 * (k + 1)).back();
     error[k] = late.velocity / (0.6 * U) - 1.0;
     EXPECT_NEAR(late.square / (0.45 * U * U), 1.0, 2.0 * std::abs(error[k]));

@@ -126,7 +126,7 @@ inline Verdict sit(const Clean& made, Kind kind, std::uint64_t seed, bool whole)
     twin.free[2].lower = twin.truth[2] - 0.5 * made.error[2];
     twin.free[3].upper = twin.truth[3] + 0.5 * made.error[3];
   } else if (kind == Kind::prior) {
-    for (const std::size_t i : {0, 2}) {
+    for (const std::size_t i : {0U, 2U}) {
       const double sd = made.error[static_cast<Eigen::Index>(i)];
       twin.free[i].prior = Prior{twin.truth[i] + sd * normal(random), sd};
     }

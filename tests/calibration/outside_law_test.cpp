@@ -2,6 +2,8 @@
 /// the library's own.
 #include <numeric>
 
+#include <gtest/gtest.h>
+
 #include "calibration/fit.hpp"
 #include "calibration/path_derivatives.hpp"
 #include "input/law_tables.hpp"

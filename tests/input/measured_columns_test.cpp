@@ -165,7 +165,7 @@ TEST_F(MeasuredTables, what_is_wrong_in_a_fit_is_said) {
            {"separator = \";\"", "there are no rows with numbers"},
            {"decimal = \";\"", "decimal must be \".\" or \",\""},
            {"from = 0.02", "has 1 rows with eps_a in the range that is compared"}}) {
-    const std::string text = complaint([&] { fit(keys); });
+    const std::string text = complaint([&, &written = keys] { fit(written); });
     EXPECT_NE(text.find(part), std::string::npos) << keys << "\n" << text;
     EXPECT_NE(text.find("f.toml:"), std::string::npos) << text;
   }
