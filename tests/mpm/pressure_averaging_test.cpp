@@ -34,7 +34,7 @@ AlignedVector<double> means(PointSet points, const AlignedVector<double>& elasti
     if (tile[T_MASS][n] > 0.0) nodes.elastic[n] = tile[T_EXTRA][n] / tile[T_MASS][n];
   AlignedVector<double> vx(points.count), vy(points.count), mean(points.count);
   tile_to_points<K, Keeps::nothing, true>(nodes, origin, h, all, Retention{}, points,
-                                          {{vx.data(), vy.data(), mean.data()}});
+                                          {{vx.data(), vy.data()}, mean.data()});
   return mean;
 }
 
