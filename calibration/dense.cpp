@@ -1,6 +1,6 @@
 #include "calibration/dense.hpp"
 
-#include <algorithm>
+#include <utility>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>

@@ -1,6 +1,7 @@
 #include "io/json.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
@@ -29,7 +30,12 @@ Text to_text_tree(const Json& json) {
   return nullptr;
 }
 
-Json from_text_tree(const Text& text) {
+/// What refers to itself nowhere may still be nested deeper than a stack holds.
+constexpr int most_levels = 500;
+
+Json from_text_tree(const Text& text, int levels = 0) {
+  if (levels > most_levels)
+    throw Json::Error("nested more than " + std::to_string(most_levels) + " levels deep");
   switch (text.type()) {
     case Text::value_t::boolean:
       return text.get<bool>();
@@ -44,12 +50,12 @@ Json from_text_tree(const Text& text) {
     case Text::value_t::array: {
       Json::Array list;
       list.reserve(text.size());
-      for (const Text& x : text) list.push_back(from_text_tree(x));
+      for (const Text& x : text) list.push_back(from_text_tree(x, levels + 1));
       return list;
     }
     case Text::value_t::object: {
       Json object = Json::object();
-      for (const auto& [key, value] : text.items()) object[key] = from_text_tree(value);
+      for (const auto& [key, value] : text.items()) object[key] = from_text_tree(value, levels + 1);
       return object;
     }
     default:
@@ -103,7 +109,11 @@ Json Json::parse(std::string_view text) {
 std::optional<Json> Json::try_parse(std::string_view text) {
   const Text tree = Text::parse(text, nullptr, false);
   if (tree.is_discarded()) return {};
-  return from_text_tree(tree);
+  try {
+    return from_text_tree(tree);
+  } catch (const Error&) {
+    return {};
+  }
 }
 
 std::string Json::dump(int indent) const {
@@ -212,8 +222,10 @@ bool Json::to_bool() const {
 std::int64_t Json::to_integer() const {
   if (const auto* x = std::get_if<std::int64_t>(&value_)) return *x;
   if (const auto* x = std::get_if<std::uint64_t>(&value_)) return static_cast<std::int64_t>(*x);
-  if (const auto* x = std::get_if<double>(&value_)) return static_cast<std::int64_t>(*x);
-  refuse("a number");
+  // 2^63, beyond which a conversion has no value; false for not-a-number as well
+  if (const auto* x = std::get_if<double>(&value_); x != nullptr && std::abs(*x) < 0x1p63)
+    return static_cast<std::int64_t>(*x);
+  refuse("an integer of 64 bits");
 }
 
 double Json::to_double() const {

@@ -12,25 +12,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string law = R"([law]
-name = "modified_cam_clay"
-compression = "v-ln_p"
-M = 0.888
-lambda = 0.161
-kappa = 0.062
-nu = 0.3
-Gamma = 2.759
-)";
-
-const std::string rest = R"(
-[initial]
-p = 100e3
-ocr = 1.0
-[test]
-kind = "triaxial"
-drainage = "undrained"
-axial_strain = 0.1
-)";
+/// A shipped test in two: its [law] table, and what follows.
+const std::string whole =
+    content_of(REPOSE_SOURCE_DIR "/data/experiments/london_clay_drained.toml");
+const std::size_t cut = whole.find("[initial]");
+const std::string law = whole.substr(whole.find("[law]"), cut - whole.find("[law]"));
+const std::string rest = "\n" + whole.substr(cut);
 
 class LawFromFile : public ::testing::Test {
  protected:

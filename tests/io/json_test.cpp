@@ -83,6 +83,14 @@ TEST(Json, SaysWhatIsWrong) {
   EXPECT_NE(complaint([] { Json::parse("{\"a\": }"); }).find("line 1, column 7"),
             std::string::npos);
   EXPECT_FALSE(Json::try_parse("[1,").has_value());
+  EXPECT_EQ(complaint([] { Json(1e300).get<int>(); }),
+            "this is a number, not an integer of 64 bits");
+  const auto nested = [](std::size_t levels) {
+    return std::string(levels, '[') + std::string(levels, ']');
+  };
+  EXPECT_TRUE(Json::try_parse(nested(500)).has_value());
+  EXPECT_EQ(complaint([&] { Json::parse(nested(100'000)); }), "nested more than 500 levels deep");
+  EXPECT_FALSE(Json::try_parse(nested(100'000)).has_value());
 }
 
 }  // namespace
