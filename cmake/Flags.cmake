@@ -41,7 +41,7 @@ target_include_directories(repose_flags INTERFACE ${PROJECT_SOURCE_DIR})
 
 # repose_add_library(name [KERNELS] SOURCES a.cpp b.cpp ... LIBS targets...)
 # A room: a static library whose objects also go into the shared one of Install.cmake. KERNELS: the
-# inner loops of a time step are in it, compiled with all that the compiler can do, a file at a time,
+# inner loops of a time step or of a path are in it, compiled with all that the compiler can do, a file at a time,
 # so that no other file moves a bit of them. The others take a fifth less to compile with -O2, and half with their sources joined, eight
 # at a time (REPOSE_UNITY).
 function(repose_add_library name)

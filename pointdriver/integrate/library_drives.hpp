@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// The library's own laws along a path, in plain numbers and with derivatives: compiled once each,
-/// in drive_clay_*.cpp, drive_grains.cpp, drive_fluids.cpp and their _dual twins, for everything
+/// in drive_clay.cpp, drive_grains.cpp, drive_fluids.cpp and their _dual twins, for everything
 /// that drives them. (A law from outside brings its own: register_law.hpp.)
 
 #include "models/all_laws.hpp"

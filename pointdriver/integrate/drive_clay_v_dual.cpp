@@ -2,7 +2,6 @@
 
 namespace repose::point {
 
-REPOSE_DRIVE_PATH(Gradient, ModifiedCamClay<Compression::ln_v_ln_p>);
 REPOSE_DRIVE_PATH(Gradient, ModifiedCamClay<Compression::v_ln_p>);
 
 }  // namespace repose::point
