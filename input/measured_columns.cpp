@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -97,8 +96,6 @@ MeasuredColumns::MeasuredColumns(TomlReader& reader, std::string_view key, const
     table_ = std::move(table);
   } catch (const io::TableError& error) {
     reader.report(key, error.what());
-  } catch (const std::system_error& error) {
-    throw io::IoError(file, error.code().message());
   }
 }
 

@@ -13,6 +13,7 @@ struct PointTestFile {
   LawSpec law;
   point::PointTest test;
   point::Kind kind = point::Kind::triaxial;
+  std::vector<double> secants_at;  ///< shear strains at which a secant modulus is wanted [-]
   std::string name;                ///< of the result folder: the file's stem
   std::vector<std::string> notes;  ///< what is possible but hardly meant
 };

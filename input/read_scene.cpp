@@ -319,6 +319,7 @@ SceneFile read_scene(InputFile& file) {
   mpm::Scene& scene = result.scene;
   TomlReader root(file);
   root.expect("chart");  // read_chart.hpp
+  root.expect("sweep");  // read_sweep.hpp
   scene.name = default_name(file);
   ReadKeys keys(root);
   scene_keys(keys, result);

@@ -214,6 +214,14 @@ void test_keys(Keys& keys, TestTable& test, const std::function<void(Keys&, std:
       });
 }
 
+void report_keys(Keys& keys, std::vector<double>& secants_at) {
+  keys.number_list({"secant_G_at", "-",
+                    "shear strains at which summary.json gives the secant shear modulus of a "
+                    "triaxial or simple shear stage",
+                    Range{0.0, 1.0, true, false}},
+                   secants_at);
+}
+
 void integration_keys(Keys& keys, point::Settings& settings) {
   static constexpr std::array<std::string_view, 6> words{"automatic", "adaptive", "implicit",
                                                          "cvode",     "ida",      "arkode"};

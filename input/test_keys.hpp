@@ -121,6 +121,8 @@ void test_keys(Keys& keys, TestTable& test,
 void stage_keys(Keys& keys, StageTable& stage);
 
 void strain_key(Keys& keys, point::StrainMeasure& measure);
+/// Figures that a report wants beside the usual ones.
+void report_keys(Keys& keys, std::vector<double>& secants_at);
 void integration_keys(Keys& keys, point::Settings& settings);
 
 }  // namespace repose::input

@@ -117,6 +117,13 @@ std::string shown(std::string_view cell) {
   return '"' + std::string(cell.substr(0, most)) + (cell.size() > most ? "...\"" : "\"");
 }
 
+std::string csv_cell(std::string text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
+    text.insert(at, 1, '"');
+  return '"' + text + '"';
+}
+
 std::string_view trimmed(std::string_view text) {
   while (const std::size_t n = starts_with_one(text, blanks)) text.remove_prefix(n);
   const auto blank_at_end = [&] {

@@ -12,6 +12,9 @@ namespace repose::io {
 /// A cell as messages show it: in quotes, cut after 40 characters.
 std::string shown(std::string_view cell);
 
+/// A text as a cell of a CSV table: in quotes where it needs them (RFC 4180).
+std::string csv_cell(std::string text);
+
 /// Without blanks, tabs and no-break spaces around it.
 std::string_view trimmed(std::string_view text);
 

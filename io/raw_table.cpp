@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <system_error>
 
 #include <fmt/core.h>
 
+#include "io/atomic_file.hpp"
 #include "io/column_header.hpp"
 #include "io/number_text.hpp"
 #include "io/table_layout.hpp"
@@ -264,12 +266,11 @@ RawTable parse_table(std::string bytes, std::string file, const TableFormat& for
 }
 
 RawTable load_table(const std::filesystem::path& file, const TableFormat& format) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw IoError(file, "cannot read", EISDIR);
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
-    throw std::system_error(std::make_error_code(std::filesystem::is_directory(file)
-                                                     ? std::errc::is_a_directory
-                                                     : std::errc::no_such_file_or_directory),
-                            file.string());
+  if (!in) throw IoError(file, "cannot read", errno);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   return parse_table(std::move(bytes), file.string(), format);
 }

@@ -92,7 +92,7 @@ class RawTable {
 /// that does not end, and where rule 3 leaves it open.
 RawTable parse_table(std::string bytes, std::string file, const TableFormat& format = {});
 
-/// The same from a file. Throws std::system_error if it cannot be read.
+/// The same from a file. Throws IoError if it cannot be read.
 RawTable load_table(const std::filesystem::path& file, const TableFormat& format = {});
 
 }  // namespace repose::io

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <charconv>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -22,7 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 56> outputs{"summary.json",
+constexpr std::array<std::string_view, 60> outputs{"summary.json",
+                                                   "sweep.csv",
+                                                   "sweep.svg",
+                                                   "curves.csv",
+                                                   "finished.jsonl",
                                                    "checkpoint.h5",
                                                    "series.csv",
                                                    "profile.csv",
@@ -222,6 +227,17 @@ void RowWriter::row(std::span<const double> values) {
     throw std::invalid_argument(
         fmt::format("table {}: {} values for {} columns", path_.string(), values.size(), columns_));
   append(fmt::format("{}\n", fmt::join(values, ",")));
+}
+
+void RowWriter::rows(std::span<const double> values) {
+  if (values.size() % columns_ != 0)
+    throw std::invalid_argument(
+        fmt::format("table {}: {} values for rows of {}", path_.string(), values.size(), columns_));
+  std::string text;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    fmt::format_to(std::back_inserter(text), "{}{}", values[i],
+                   (i + 1) % columns_ == 0 ? '\n' : ',');
+  append(text);
 }
 
 void RowWriter::append(std::string_view line) {

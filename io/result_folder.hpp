@@ -66,6 +66,8 @@ class RowWriter {
   /// same double; not-a-number appears as nan. Errors: IoError; std::invalid_argument for the
   /// count.
   void row(std::span<const double> values);
+  /// Several rows one after the other, all of them or none: a multiple of the number of columns.
+  void rows(std::span<const double> values);
 
   const std::filesystem::path& path() const { return path_; }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.hpp"
+#include "app/commands/sweep.hpp"
 #include "input/file_kind.hpp"
 #include "input/shipped_input.hpp"
 #include "io/json.hpp"
@@ -12,6 +13,8 @@
 #include "report/picture/point_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
+#include "study/point/laboratory_record.hpp"
+#include "study/point/test_result.hpp"
 #include "study/run/run_record.hpp"
 
 namespace repose::app {
@@ -74,13 +77,10 @@ Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr
 
 class PointRun {
  public:
-  PointRun(const std::string& path, const CommonOptions& options)
+  PointRun(const std::string& path, input::InputFile input, const CommonOptions& options)
       : options_(options),
-        input_(input::open_test(path, options.sets)) {
-    input::require_kind(input_, input::FileKind::point_test, "point");
+        input_(std::move(input)) {
     file_ = input::read_point_test(input_);
-    law_ = &find_law(file_.law);
-    theta_ = checked_parameters(file_.law);
     origin_ = "From " + path;
     for (const std::string& set : options.sets) origin_ += " --set " + set;
     std::replace_if(
@@ -95,17 +95,16 @@ class PointRun {
     const toml::table input = resolved(input_, file_);
     write(folder, "input.toml", toml_text(input, origin_));
     const study::Usage before = study::usage();
-    const point::Outcome outcome = point::simulate(*law_, theta_, file_.test, curve_);
+    result_ = study::drive(file_);
     const study::Usage after = study::usage();
-    reason_ = point::explain(*law_, theta_, file_.test, curve_);
-    write(folder, "curve.csv", csv());
-    const Json report = summary(input, after.wall_s - before.wall_s, after.cpu_s - before.cpu_s);
+    write(folder, "curve.csv", study::curve_csv(file_, result_));
+    const Json report = summary(input, result_.wall_s, after.cpu_s - before.cpu_s);
     write(folder, "summary.json", report.dump(2) + "\n");
     const bool drawn = draw(folder);
     if (!options_.quiet)
       for (const std::string& note : file_.notes) fmt::print(stderr, "warning: {}\n", note);
     tell(folder, report, drawn);
-    return point::is_failure(outcome.status) ? io::ExitCode::numerical_failure : io::ExitCode::done;
+    return result_.failed() ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
  private:
@@ -117,38 +116,24 @@ class PointRun {
 
   std::vector<double> column(point::Quantity quantity) const {
     std::vector<double> values;
-    point::read_column(*law_, theta_, file_.test, curve_, quantity, values);
+    point::read_column(*result_.law, result_.theta, file_.test, result_.curve, quantity, values);
     return values;
   }
 
-  std::string csv() const {
-    std::string text;
-    std::vector<std::vector<double>> columns;
-    for (const point::Quantity q : point::columns_of(*law_, file_.test)) {
-      text += (text.empty() ? "" : ",") + std::string(point::column_name(q));
-      columns.push_back(column(q));
-    }
-    text += "\n";
-    for (std::size_t row = 0; row < curve_.rows.size(); ++row)
-      for (std::size_t i = 0; i < columns.size(); ++i)
-        text += fmt::format("{}{}", columns[i][row] + 0.0, i + 1 < columns.size() ? ',' : '\n');
-    return text;
-  }
-
   Json summary(const toml::table& input, double wall, double cpu) const {
-    const point::Outcome& o = curve_.outcome;
+    const point::Outcome& o = result_.curve.outcome;
     Json s;
     s["repose"] = version_string;
     s["kind"] = "point_test";
     s["name"] = file_.name;
-    s["status"] = point::is_failure(o.status) ? "failed" : "done";
-    s["reason"] = reason_;
+    s["status"] = result_.failed() ? "failed" : "done";
+    s["reason"] = result_.reason;
     s["fraction"] = o.fraction;
-    s["method"] = point::name_of(point::method_for(*law_, file_.test.settings.method));
+    s["method"] = point::name_of(point::method_for(*result_.law, file_.test.settings.method));
     s["tolerance"] = file_.test.settings.tolerance;
     s["strain"] = point::name_of(file_.test.path.measure);
     s["warnings"] = file_.notes;
-    s["rows"] = curve_.rows.size();
+    s["rows"] = result_.curve.rows.size();
     s["steps"] = o.counts.steps;
     s["steps_rejected"] = o.counts.rejected;
     s["rate_evaluations"] = o.counts.rates;
@@ -156,15 +141,16 @@ class PointRun {
     s["wall_s"] = wall;
     s["cpu_s"] = cpu;
     s["seed"] = options_.seed;
-    if (!curve_.rows.empty()) add_figures(s);
+    if (!result_.curve.rows.empty()) add_figures(s);
+    s["laboratory"] = study::laboratory_json(result_.figures);
     s["input"] = json_of(input);
     return s;
   }
 
   void add_figures(Json& s) const {
-    const auto& last = curve_.rows.back();
+    const auto& last = result_.curve.rows.back();
     double residual = 0.0, scale = 0.0;
-    for (const auto& row : curve_.rows) {
+    for (const auto& row : result_.curve.rows) {
       residual = std::max(residual, row.residual);
       scale = std::max({scale, std::abs(row.work), std::abs(row.stored)});
     }
@@ -178,7 +164,7 @@ class PointRun {
     energy["unaccounted_relative"] = finite_or_null(scale > 0.0 ? error / scale : 0.0);
     s["energy"] = energy;
     Json end;
-    for (const point::Quantity q : point::columns_of(*law_, file_.test))
+    for (const point::Quantity q : point::columns_of(*result_.law, file_.test))
       end[std::string(point::column_name(q))] = finite_or_null(column(q).back());
     s["end"] = end;
     const auto q = column(point::Quantity::q);
@@ -188,9 +174,11 @@ class PointRun {
   /// Whether there is one. A picture that cannot be drawn is a warning, not a failure: the figures
   /// are in curve.csv.
   bool draw(const io::ResultFolder& folder) const {
-    if (options_.no_plot || curve_.rows.empty()) return false;
+    if (options_.no_plot || result_.curve.rows.empty()) return false;
     try {
-      report::point_picture(file_, theta_, curve_).render_svg(folder.file("curve.svg"));
+      const std::string changes = fmt::format("{}", fmt::join(options_.sets, ", "));
+      report::point_picture(file_, result_.theta, result_.curve, changes)
+          .render_svg(folder.file("curve.svg"));
       return true;
     } catch (const report::PlotError& error) {
       fmt::print(stderr, "warning: no curve.svg: {}\n", error.what());
@@ -201,29 +189,44 @@ class PointRun {
   }
 
   void tell(const io::ResultFolder& folder, const Json& report, bool drawn) const {
-    const bool failed = point::is_failure(curve_.outcome.status);
-    if (failed) fmt::print(stderr, "{}: {}\n", input_.name(), reason_);
+    const bool failed = result_.failed();
+    if (failed) fmt::print(stderr, "{}: {}\n", input_.name(), result_.reason);
     if (options_.json) {
       Json line{{"event", "done"}, {"folder", folder.path().string()}};
       for (const char* key : {"status", "reason", "rows", "wall_s"}) line[key] = report[key];
       fmt::print("{}\n", line.dump());
     } else if (!options_.quiet) {
       fmt::print("{}: {} rows by {} in {:.3g} ms{}; {}\n", folder.path().string(),
-                 curve_.rows.size(), report["method"].get<std::string>(),
-                 1e3 * report["wall_s"].get<double>(), failed ? "" : ", " + reason_,
+                 result_.curve.rows.size(), report["method"].get<std::string>(),
+                 1e3 * report["wall_s"].get<double>(), failed ? "" : ", " + result_.reason,
                  drawn ? "curve.csv, curve.svg, summary.json" : "curve.csv, summary.json");
+      if (const std::string line = study::laboratory_line(result_.figures); !line.empty())
+        fmt::print("{}\n", line);
     }
   }
 
   CommonOptions options_;
   input::InputFile input_;
   input::PointTestFile file_;
-  const LawInfo* law_ = nullptr;
-  std::vector<double> theta_;
   std::string origin_;
-  point::Curve curve_;
-  std::string reason_;
+  study::TestResult result_;
 };
+
+io::ExitCode run_test(const std::string& path, const CommonOptions& options) {
+  input::InputFile input = input::open_test(path, options.sets);
+  input::require_kind(input, input::FileKind::point_test, "point");
+  const std::optional<input::ParameterSets> sweep = input::read_sweep(input);
+  if (sweep) {
+    input.throw_if_bad();
+    return run_point_sweep(path, input, *sweep, options);
+  }
+  for (const auto& [given, option] :
+       {std::pair{options.resume, "--resume"}, {options.threads > 0, "--threads"}})
+    if (given)
+      throw input::BadInput(
+          {fmt::format("{} goes with a [sweep], and {} has none", option, input.name())});
+  return PointRun(path, std::move(input), options).run();
+}
 
 }  // namespace
 
@@ -234,17 +237,20 @@ Command add_point(CLI::App& root) {
       "  repose point weald_clay_undrained\n"
       "  repose point weald_clay_undrained --set initial.ocr=8 -o results/oc\n"
       "  repose point my_test.toml --set law=results/my_fit/fitted.toml\n"
+      "  repose point weald_clay_undrained --set 'sweep.grid={\"initial.ocr\" = [1, 2, 4, 8]}'\n"
       "Writes curve.csv, curve.svg, summary.json and input.toml. A path that cannot be finished\n"
-      "leaves the part done and returns 3.");
+      "leaves the part done and returns 3. With a [sweep]: sweep.csv, curves.csv, sweep.svg.");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
   verb.required("TEST.toml", *file,
                 fmt::format("A file, or one of {}", fmt::join(input::shipped_tests(), ", ")), "");
   verb.option("-o,--output", options->output, "Result folder (default: results/NAME)", "DIR");
   add_set(verb, *options);
+  add_threads(verb, *options);
+  verb.flag("--resume", options->resume, "Go on with an interrupted [sweep]");
   add_no_plot(verb, *options);
   add_quiet(verb, *options);
-  return {verb.app(), options, [options, file] { return PointRun(*file, *options).run(); }};
+  return {verb.app(), options, [options, file] { return run_test(*file, *options); }};
 }
 
 }  // namespace repose::app

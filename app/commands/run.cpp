@@ -5,6 +5,7 @@
 
 #include "app/accurate_run.hpp"
 #include "app/commands/command.hpp"
+#include "app/commands/sweep.hpp"
 #include "input/file_kind.hpp"
 #include "input/resolved_scene.hpp"
 #include "input/shipped_input.hpp"
@@ -86,6 +87,10 @@ io::ExitCode run_file(const RunArguments& arguments) {
       throw input::BadInput({fmt::format("{} goes with --accuracy, which is missing", option)});
   input::InputFile input = input::open_scene(path, options.sets);
   input::require_kind(input, input::FileKind::scene, "run");
+  if (const std::optional<input::ParameterSets> sweep = input::read_sweep(input)) {
+    input.throw_if_bad();
+    return run_scene_sweep(path, input, *sweep, options);
+  }
   study::RunRequest request;
   request.file = input::read_scene(input);
   request.input = input::resolved_input(request.file, origin_line(path, options));

@@ -161,6 +161,8 @@ LegSpec leg_of(const Stage& stage) {
   leg.points = stage.points;
   leg.stops = stage.stops;
   leg.continues = stage.continues;
+  leg.kind = stage.kind;
+  leg.condition = stage.condition;
   leg.name = name_of(stage.kind);
   if (stage.kind == Kind::triaxial || stage.kind == Kind::simple_shear)
     leg.name = std::string(name_of(stage.condition)) + " " + leg.name;

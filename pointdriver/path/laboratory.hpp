@@ -10,18 +10,6 @@
 
 namespace repose::point {
 
-enum class Kind : std::uint8_t { isotropic, oedometer, triaxial, simple_shear, custom };
-
-/// What is kept while the test is driven.
-enum class Condition : std::uint8_t {
-  drained,                 ///< triaxial: σ_r constant
-  undrained,               ///< triaxial: no change of volume
-  constant_p,              ///< triaxial, simple shear: mean stress constant
-  constant_sigma_a,        ///< triaxial: axial stress constant
-  constant_volume,         ///< simple shear
-  constant_normal_stress,  ///< simple shear: σ_yy constant
-};
-
 enum class Drive : std::uint8_t {
   strain,      ///< at a strain rate
   stress,      ///< at a stress rate

@@ -35,6 +35,19 @@ Leg::Leg(LegSpec spec) : spec_(std::move(spec)) {
   control_[1] = prepared(spec_, -1.0);
 }
 
+std::vector<Path::Place> Path::places() const {
+  std::vector<Place> places;
+  int half_cycles = 0;  // of this stage; a cycle is two legs, up and down
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    const bool goes_on = legs[i].spec().continues && i > 0;
+    const bool cyclic = goes_on || (i + 1 < legs.size() && legs[i + 1].spec().continues);
+    half_cycles = goes_on ? half_cycles + 1 : 0;
+    const int stage = (places.empty() ? 0 : places.back().stage) + (goes_on ? 0 : 1);
+    places.push_back({stage, cyclic ? half_cycles / 2 + 1 : 0});
+  }
+  return places;
+}
+
 std::size_t Path::row_count() const {
   std::size_t n = 2;  // the start and, should it fail, where
   for (const Leg& leg : legs) n += static_cast<std::size_t>(leg.spec().points);

@@ -19,6 +19,18 @@ struct Goal {
   StrainMeasure measure = StrainMeasure::logarithmic;  ///< of a strain located on the way
 };
 
+enum class Kind : std::uint8_t { isotropic, oedometer, triaxial, simple_shear, custom };
+
+/// What is kept while the test is driven.
+enum class Condition : std::uint8_t {
+  drained,                 ///< triaxial: σ_r constant
+  undrained,               ///< triaxial: no change of volume
+  constant_p,              ///< triaxial, simple shear: mean stress constant
+  constant_sigma_a,        ///< triaxial: axial stress constant
+  constant_volume,         ///< simple shear
+  constant_normal_stress,  ///< simple shear: σ_yy constant
+};
+
 /// One leg. It ends after `duration`, or when the goal is reached:
 /// - with a goal that the driver row leads to at a known rate (ε_a under a prescribed axial rate, p
 ///   under a prescribed mean stress rate), the duration follows from the state at its start;
@@ -33,9 +45,11 @@ struct LegSpec {
   double strain_limit = 1.0;  ///< of the driver, for a goal located as an event [-]
   double duration = 0.0;      ///< without goal [s]
   int points = 1;             ///< rows of output, evenly spaced in time
-  bool continues = false;   ///< belongs to the stage of the leg before: its strains go on counting
-  std::vector<Goal> stops;  ///< conditions that end the whole test
-  std::string name;         ///< for messages: "drained extension"
+  bool continues = false;    ///< belongs to the stage of the leg before: its strains go on counting
+  std::vector<Goal> stops;   ///< conditions that end the whole test
+  std::string name;          ///< for messages: "drained extension"
+  Kind kind = Kind::custom;  ///< the laboratory's name for it
+  Condition condition = Condition::drained;  ///< where the kind has a choice
 };
 
 /// A leg with its control prepared for both signs of the driver.
@@ -71,6 +85,11 @@ struct Path {
   bool wants_strain_rate = false;        ///< rows carry D (for γ̇ and I)
   bool needs_axisymmetry = false;  ///< the initial stress must have σ_xx = σ_zz and no shear
   bool needs_isotropy = false;     ///< the initial stress must be isotropic
+  /// Of every leg its stage, from 1, and in a stage of cycles its cycle, from 1 (else 0).
+  struct Place {
+    int stage = 0, cycle = 0;
+  };
+  std::vector<Place> places() const;
   /// Upper bound of the number of rows that a completed path writes.
   std::size_t row_count() const;
 };

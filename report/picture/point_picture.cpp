@@ -1,7 +1,9 @@
 #include "report/picture/point_picture.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <fmt/core.h>
 
@@ -10,6 +12,13 @@ namespace {
 
 using point::Quantity;
 
+/// The rows of a stage, with the one that it begins in: start … end − 1.
+struct StageRows {
+  std::size_t start = 0, end = 0;
+  std::size_t last_cycle = 0;  ///< first row of the last cycle, if there are several; else 0
+  bool shears = false;
+};
+
 /// Reads columns in the units of the picture, and parameters by name.
 class Source {
  public:
@@ -17,7 +26,38 @@ class Source {
       : law_(find_law(file.law)),
         theta_(theta),
         test_(file.test),
-        curve_(curve) {}
+        curve_(curve) {
+    const auto places = test_.path.places();
+    int stage = 0, cycle = 0;
+    for (std::size_t row = 0; row < curve.rows.size(); ++row) {
+      const auto leg = static_cast<std::size_t>(curve.rows[row].leg);
+      if (places[leg].stage != stage) {
+        stages_.push_back({row == 0 ? 0 : row - 1, 0, 0,
+                           kind(leg) == point::Kind::triaxial || kind(leg) == point::Kind::custom});
+        cycle = places[leg].cycle;
+      } else if (places[leg].cycle != cycle) {
+        stages_.back().last_cycle = row;
+        cycle = places[leg].cycle;
+      }
+      stage = places[leg].stage;
+      stages_.back().end = row + 1;
+    }
+  }
+
+  const std::vector<StageRows>& stages() const { return stages_; }
+  std::vector<std::size_t> all_stages() const {
+    std::vector<std::size_t> all(stages_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return all;
+  }
+  /// Those in which q is driven, after consolidation; all if there is none.
+  std::vector<std::size_t> shear_stages() const {
+    std::vector<std::size_t> sheared;
+    for (const std::size_t k : all_stages())
+      if (stages_[k].shears) sheared.push_back(k);
+    return sheared.empty() ? all_stages() : sheared;
+  }
+  point::Kind last_kind() const { return kind(test_.path.legs.size() - 1); }
 
   std::vector<double> column(Quantity quantity, double factor = 1.0) const {
     std::vector<double> values;
@@ -38,6 +78,9 @@ class Source {
   const LawInfo& law() const { return law_; }
 
  private:
+  point::Kind kind(std::size_t leg) const { return test_.path.legs[leg].spec().kind; }
+
+  std::vector<StageRows> stages_;
   const LawInfo& law_;
   std::span<const double> theta_;
   const point::PointTest& test_;
@@ -66,10 +109,38 @@ void yield_surface(Axes& axes, const std::string& name, double M, double p_c, do
   axes.dashed(name, p, q, style);
 }
 
-void stress_path(Figure& figure, const Source& source) {
+/// A stage's rows of two columns, each in its own colour; in a stage of cycles the last of them
+/// stands out from those before.
+void stages(Axes& axes, const Source& source, const std::vector<double>& x,
+            const std::vector<double>& y, const std::vector<std::size_t>& which) {
+  const bool alone = which.size() == 1;
+  for (const std::size_t k : which) {
+    const StageRows& stage = source.stages()[k];
+    const Colour colour = alone ? Colour::blue : cycle_colour(k);
+    const auto part = [&](const std::vector<double>& values, std::size_t from, std::size_t to) {
+      return std::span(values).subspan(from, to - from);
+    };
+    if (stage.last_cycle > stage.start) {
+      axes.line("cycles", part(x, stage.start, stage.last_cycle),
+                part(y, stage.start, stage.last_cycle), {Colour::sky, 1.0});
+      axes.line("last cycle", part(x, stage.last_cycle - 1, stage.end),
+                part(y, stage.last_cycle - 1, stage.end), {Colour::vermillion});
+    } else {
+      axes.line(alone || which.size() > 6 ? "" : fmt::format("stage {}", k + 1),
+                part(x, stage.start, stage.end), part(y, stage.start, stage.end), {colour});
+    }
+  }
+}
+
+void stages(Axes& axes, const Source& source, const std::vector<double>& x,
+            const std::vector<double>& y) {
+  stages(axes, source, x, y, source.all_stages());
+}
+
+void stress_path(Figure& figure, const Source& source, bool undrained) {
   Axes& axes = figure.add_axes();
   axes.title = "stress path";
-  axes.x.label = "p (kPa)";
+  axes.x.label = undrained ? "p′, p (kPa)" : "p′ (kPa)";
   axes.y.label = "q (kPa)";
   const auto p = source.column(Quantity::p, kPa);
   const auto q = source.column(Quantity::q, kPa);
@@ -93,26 +164,37 @@ void stress_path(Figure& figure, const Source& source) {
       axes.line("", line_p, lower, {Colour::black, 1.0});
     }
   }
-  axes.line("path", p, q, {Colour::blue});
+  if (undrained) {  // p = p′ + u
+    std::vector<double> total = source.column(Quantity::u, kPa);
+    for (std::size_t row = 0; row < total.size(); ++row) total[row] += p[row];
+    const StageRows& sheared = source.stages()[source.shear_stages().front()];
+    axes.dashed("total stress", std::span(total).subspan(sheared.start),
+                std::span(q).subspan(sheared.start), {Colour::grey, 1.2});
+  }
+  if (source.stages().size() == 1 && source.stages().front().last_cycle == 0)
+    axes.line("effective stress", p, q, {Colour::blue});
+  else
+    stages(axes, source, p, q);
 }
 
 void against_axial_strain(Figure& figure, const Source& source, bool undrained) {
   const auto eps_a = source.column(Quantity::eps_a, percent);
+  const std::vector<std::size_t> sheared = source.shear_stages();
   Axes& stress = figure.add_axes();
   stress.title = "stress and strain";
   stress.x.label = source.strain_label("ε_{a}");
   stress.y.label = "q (kPa)";
-  stress.line("", eps_a, source.column(Quantity::q, kPa), {Colour::blue});
+  stages(stress, source, eps_a, source.column(Quantity::q, kPa), sheared);
   Axes& volume = figure.add_axes();
   volume.x.label = source.strain_label("ε_{a}");
   if (undrained) {
     volume.title = "excess pore pressure";
     volume.y.label = "u (kPa)";
-    volume.line("", eps_a, source.column(Quantity::u, kPa), {Colour::vermillion});
+    stages(volume, source, eps_a, source.column(Quantity::u, kPa), sheared);
   } else {
     volume.title = "volume (compression positive)";
     volume.y.label = source.strain_label("ε_{v}");
-    volume.line("", eps_a, source.column(Quantity::eps_v, percent), {Colour::vermillion});
+    stages(volume, source, eps_a, source.column(Quantity::eps_v, percent), sheared);
   }
 }
 
@@ -123,7 +205,7 @@ void compression_plane(Figure& figure, const Source& source) {
   if (v.empty() || !std::isfinite(v.front()) || !std::isfinite(source.parameter("lambda"))) return;
   Axes& axes = figure.add_axes();
   axes.title = "compression plane";
-  axes.x = {"p (kPa)", AxisScale::logarithmic};
+  axes.x = {"p′ (kPa)", AxisScale::logarithmic};
   axes.y.label = "v";
   const double lambda = source.parameter("lambda"), p_ref = kPa * source.parameter("p_ref");
   const bool straight_in_v = source.law().option == "v-ln_p";
@@ -147,7 +229,44 @@ void compression_plane(Figure& figure, const Source& source) {
   };
   line("isotropic compression", "N", Colour::grey);
   line("critical state", "Gamma", Colour::black);
-  axes.line("path", p, v, {Colour::blue});
+  stages(axes, source, p, v);
+}
+
+/// One-dimensional compression as it is drawn in a laboratory: e (or ε_a) over log σ′_a, and K0.
+void oedometer_panels(Figure& figure, const Source& source) {
+  const auto sigma_a = source.column(Quantity::sigma_a, kPa);
+  const auto v = source.column(Quantity::v);
+  Axes& curve = figure.add_axes();
+  curve.x = {"σ′_{a} (kPa)", AxisScale::logarithmic};
+  if (!v.empty() && std::isfinite(v.front())) {
+    curve.title = "compression curve";
+    curve.y.label = "e";
+    std::vector<double> e = v;
+    for (double& x : e) x -= 1.0;
+    stages(curve, source, sigma_a, e);
+  } else {
+    curve.title = "compression curve (compression positive)";
+    curve.y.label = source.strain_label("ε_{a}");
+    stages(curve, source, sigma_a, source.column(Quantity::eps_a, percent));
+  }
+  stress_path(figure, source, false);
+  Axes& ratio = figure.add_axes();
+  ratio.title = "horizontal stress";
+  ratio.x = {"σ′_{a} (kPa)", AxisScale::logarithmic};
+  ratio.y.label = "K_{0} = σ′_{r}/σ′_{a}";
+  std::vector<double> K0 = source.column(Quantity::sigma_r, kPa);
+  for (std::size_t row = 0; row < K0.size(); ++row) K0[row] /= sigma_a[row];
+  stages(ratio, source, sigma_a, K0);
+}
+
+/// v (or ε_v) over ln p′.
+void isotropic_panels(Figure& figure, const Source& source) {
+  compression_plane(figure, source);
+  Axes& volume = figure.add_axes();
+  volume.title = "volume (compression positive)";
+  volume.x.label = "p′ (kPa)";
+  volume.y.label = source.strain_label("ε_{v}");
+  stages(volume, source, source.column(Quantity::p, kPa), source.column(Quantity::eps_v, percent));
 }
 
 void shear_panels(Figure& figure, const Source& source) {
@@ -157,18 +276,18 @@ void shear_panels(Figure& figure, const Source& source) {
   stress.title = "shear stress";
   stress.x.label = "γ (%)";
   stress.y.label = "τ (kPa)";
-  stress.line("", gamma, tau, {Colour::blue});
+  stages(stress, source, gamma, tau);
   Axes& path = figure.add_axes();
-  path.title = "stress path";
-  path.x.label = "p (kPa)";
+  path.title = "stress path on the horizontal plane";
+  path.x.label = "σ′_{yy} (kPa)";
   path.y.label = "τ (kPa)";
-  path.line("", source.column(Quantity::p, kPa), tau, {Colour::blue});
+  stages(path, source, source.column(Quantity::sigma_a, kPa), tau);
   const auto I = source.column(Quantity::I);
   if (std::isfinite(source.parameter("d"))) {
     Axes& axes = figure.add_axes();
     axes.title = "friction over inertial number";
     axes.x = {"I", AxisScale::logarithmic};
-    axes.y.label = "μ = τ/p";
+    axes.y.label = "μ = |s|/p′";
     std::vector<double> x, y, flow_x, flow_y;
     const auto mu = source.column(Quantity::mu);
     for (std::size_t i = 1; i < I.size(); ++i)  // row 0 is the state at rest
@@ -193,27 +312,42 @@ void shear_panels(Figure& figure, const Source& source) {
     axes.title = "volume (compression positive)";
     axes.x.label = "γ (%)";
     axes.y.label = source.strain_label("ε_{v}");
-    axes.line("", gamma, source.column(Quantity::eps_v, percent), {Colour::vermillion});
+    stages(axes, source, gamma, source.column(Quantity::eps_v, percent));
   }
 }
 
 }  // namespace
 
 Figure point_picture(const input::PointTestFile& file, std::span<const double> theta,
-                     const point::Curve& curve) {
-  Figure figure(file.name, fmt::format("{} ({}), {} rows", file.law.name, find_law(file.law).option,
-                                       curve.rows.size()));
-  if (find_law(file.law).option.empty())
-    figure.subtitle = fmt::format("{}, {} rows", file.law.name, curve.rows.size());
+                     const point::Curve& curve, std::string_view changes) {
+  const std::string option(find_law(file.law).option);
+  const std::string law = file.law.name + (option.empty() ? "" : " (" + option + ")");
+  constexpr std::size_t longest = 60;  // characters of a title
+  const bool in_title = !changes.empty() && file.name.size() + changes.size() <= longest;
+  Figure figure(in_title ? fmt::format("{}, {}", file.name, changes) : file.name,
+                fmt::format("{}{}, {} rows", law,
+                            in_title || changes.empty() ? "" : fmt::format(", {}", changes),
+                            curve.rows.size()));
   figure.columns = 2;
   const Source source(file, theta, curve);
-  if (file.test.path.frame == point::Frame::shear) {
-    shear_panels(figure, source);
-  } else {
-    stress_path(figure, source);
-    against_axial_strain(figure, source, file.test.path.undrained);
+  switch (source.last_kind()) {
+    case point::Kind::simple_shear:
+      shear_panels(figure, source);
+      compression_plane(figure, source);
+      break;
+    case point::Kind::oedometer:
+      oedometer_panels(figure, source);
+      break;
+    case point::Kind::isotropic:
+      isotropic_panels(figure, source);
+      break;
+    case point::Kind::triaxial:
+    case point::Kind::custom:
+      stress_path(figure, source, file.test.path.undrained);
+      against_axial_strain(figure, source, file.test.path.undrained);
+      compression_plane(figure, source);
+      break;
   }
-  compression_plane(figure, source);
   return figure;
 }
 

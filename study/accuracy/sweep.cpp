@@ -22,27 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr int rows_of_series = 60;
 
-/// The columns of a table of numbers that this program has written.
-std::map<std::string, std::vector<double>, std::less<>> columns_of(const fs::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  std::vector<std::string> names;
-  std::istringstream head(line);
-  for (std::string name; std::getline(head, name, ',');) names.push_back(name);
-  std::map<std::string, std::vector<double>, std::less<>> columns;
-  while (std::getline(in, line)) {
-    std::istringstream cells(line);
-    std::string cell;
-    for (const std::string& name : names) {
-      if (!std::getline(cells, cell, ',')) throw io::IoError(file, "has a row that is too short");
-      columns[name].push_back(std::stod(cell));
-    }
-  }
-  if (names.empty()) throw io::IoError(file, "cannot read");
-  return columns;
-}
-
 /// The step as it was asked for: fixed steps [s], or Courant numbers, which compare among
 /// themselves.
 double nominal_step(const mpm::Scene& scene) { return scene.dt.value_or(scene.courant); }
@@ -85,23 +64,11 @@ std::string_view after_version(std::string_view text) {
   return text.substr(std::min(text.size(), text.find('\n')));
 }
 
-RunSummary read_summary(const fs::path& file) {
-  const auto json = io::Json::try_parse(text_of(file));
-  if (!json || !json->is_object()) throw io::IoError(file, "is not the summary of a run");
-  RunSummary summary;
-  summary.status = json->value("status", "");
-  summary.reason = json->value("reason", "");
-  summary.warnings = json->value("warnings", summary.warnings);
-  for (const auto& [name, value] : json->items())
-    if (value.is_number()) summary.figures[name] = value.get<double>();
-  return summary;
-}
-
 void read_result(SweepRun& run, const fs::path& folder) {
   run.summary = read_summary(folder / "summary.json");
-  run.series = columns_of(folder / "series.csv");
+  run.series = read_numbers(folder / "series.csv");
   if (!run.done()) return;
-  auto profile = columns_of(folder / "profile.csv");
+  auto profile = read_numbers(folder / "profile.csv");
   run.x_m = std::move(profile["x_m"]);
   run.depth_m = std::move(profile["depth_m"]);
 }

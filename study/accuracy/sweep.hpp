@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "input/read_chart.hpp"
+#include "study/run/finished_result.hpp"
 #include "study/run/run_scene.hpp"
 
 namespace repose::study {
@@ -28,21 +29,13 @@ struct SceneVariant {
   std::vector<std::pair<std::string, std::string>> values;  ///< key and value, in that order
 };
 
-/// What summary.json says of a run.
-struct RunSummary {
-  std::string status;  ///< "": no result yet
-  std::string reason;  ///< of a failure
-  std::vector<std::string> warnings;
-  std::map<std::string, double, std::less<>> figures;  ///< every number of it
-};
-
 /// One run of a sweep and, once it is there, its result. Figures keep the names of summary.json.
 struct SweepRun {
   input::SceneFile file;  ///< named after what is varied, with 60 rows of series
   std::vector<std::pair<std::string, std::string>> varied;  ///< as in SceneVariant
   RunSummary summary;
-  std::map<std::string, std::vector<double>, std::less<>> series;  ///< columns of series.csv
-  std::vector<double> x_m, depth_m;                                ///< profile.csv
+  NumberTable series;                ///< series.csv
+  std::vector<double> x_m, depth_m;  ///< profile.csv
 
   const mpm::Scene& scene() const { return file.scene; }
   /// "sleep_speed 0.003"; "" where nothing but what has a list of its own is varied.

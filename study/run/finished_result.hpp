@@ -1,6 +1,9 @@
 #pragma once
 
+#include <map>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/result_folder.hpp"
 
@@ -12,5 +15,21 @@ bool is_finished(const io::ResultFolder& folder, std::string_view input);
 
 /// A file as text; "" if it cannot be read.
 std::string text_of(const std::filesystem::path& file);
+
+/// What summary.json says of a run.
+struct RunSummary {
+  std::string status;  ///< "": no result yet
+  std::string reason;  ///< of a failure
+  std::vector<std::string> warnings;
+  std::map<std::string, double, std::less<>> figures;  ///< every number of it
+};
+
+/// Errors: IoError if it is not there or no summary.
+RunSummary read_summary(const std::filesystem::path& file);
+
+/// The columns of a table of numbers that this program has written.
+using NumberTable = std::map<std::string, std::vector<double>, std::less<>>;
+/// Errors: IoError if it cannot be read or a row is too short or holds anything else.
+NumberTable read_numbers(const std::filesystem::path& file);
 
 }  // namespace repose::study

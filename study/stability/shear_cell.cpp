@@ -15,8 +15,6 @@ namespace {
 
 using Json = io::Json;
 
-constexpr double stiffness = shear_cell_stiffness;
-constexpr double acoustic_share = shear_cell_acoustic_share;
 /// Of waves that are tied to the cells.
 constexpr int cells_per_wave = 8;
 /// In units of ρ/(ηk²): the relaxation time, which loses 0.0004 at eight cells to a wave, and how
@@ -94,14 +92,15 @@ class MapOfShearCell {
 
   ShearCellMaps run() {
     maps_.p = input_.p;
-    maps_.figures = Json{{"K_over_p", stiffness}, {"acoustic_share", acoustic_share}};
+    maps_.figures =
+        Json{{"K_over_p", shear_cell_stiffness}, {"acoustic_share", shear_cell_acoustic_share}};
     maps_.figures["signs"] = signs();
     maps_.figures["refinement"] = refinement();
     return std::move(maps_);
   }
 
  private:
-  SteadyShear shear(const std::string& form, double I, double K_over_p = stiffness,
+  SteadyShear shear(const std::string& form, double I, double K_over_p = shear_cell_stiffness,
                     double friction_ratio = 0.0) const {
     std::map<std::string, double> values{{"K", K_over_p * input_.p}};
     if (friction_ratio > 0.0) values["mu_d"] = friction_ratio * input_.grains.values.at("mu_0");
@@ -114,7 +113,8 @@ class MapOfShearCell {
     std::string csv = "form,I,mu_d_over_mu_0,C,incompressible,theory,expected,measured,agrees\n";
     const auto take = [&](const std::string& form, const SteadyShear& at, double I) {
       const double C = ill_posedness(at.response);
-      const Rates r = measure(at, cell_of(at, at.wavelength_of(acoustic_share), cells_per_wave));
+      const Rates r =
+          measure(at, cell_of(at, at.wavelength_of(shear_cell_acoustic_share), cells_per_wave));
       const bool agrees = (C > 0.0) == (r.measured > 0.0);
       const bool counts = std::abs(at.fastest()) > neutral_margin;
       ++maps_.points;
@@ -148,7 +148,7 @@ class MapOfShearCell {
       CellMap& map = maps_.map.emplace();
       for (const double ratio : {1.05, 1.3, 1.6, 2.0, 2.5, 3.0})
         for (const double I : decades(1e-3, 10.0, 9)) {
-          const SteadyShear at = shear("elastoviscoplastic", I, stiffness, ratio);
+          const SteadyShear at = shear("elastoviscoplastic", I, shear_cell_stiffness, ratio);
           map.I.push_back(I);
           map.ratio.push_back(ratio);
           map.measured.push_back(take("elastoviscoplastic", at, I).measured);
@@ -194,9 +194,9 @@ class MapOfShearCell {
       const SteadyShear at = shear("elastoviscoplastic", I);
       CellConvergence series{I, {}, {}, {}};
       for (const int cells : input_.quick ? std::vector{6, 8} : std::vector{6, 8, 12, 16}) {
-        const mpm::ShearCell cell = cell_of(at, at.wavelength_of(acoustic_share), cells);
+        const mpm::ShearCell cell = cell_of(at, at.wavelength_of(shear_cell_acoustic_share), cells);
         const Rates r = measure(at, cell);
-        row("fixed_wavelength", "elastoviscoplastic", I, stiffness, at, cell, r);
+        row("fixed_wavelength", "elastoviscoplastic", I, shear_cell_stiffness, at, cell, r);
         series.cells.push_back(cells);
         series.expected.push_back(r.expected / r.theory);
         series.measured.push_back(r.measured / r.theory);
@@ -266,7 +266,7 @@ class MapOfShearCell {
         const mpm::Growth growth =
             mpm::follow_growth(cell, duration_of_noise / viscous, HUGE_VAL, samples);
         const double rate = mpm::late_rate(growth.time, growth.log_size);
-        row("noise", "elastoviscoplastic", I, stiffness, at, cell,
+        row("noise", "elastoviscoplastic", I, shear_cell_stiffness, at, cell,
             {std::nan(""), std::nan(""), rate / viscous});
         std::vector<double> time = growth.time;
         for (double& t : time) t *= at.viscous_rate(longest);

@@ -1,0 +1,175 @@
+#include "study/point/point_sweep.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "io/interrupt.hpp"
+#include "io/number_text.hpp"
+#include "study/point/laboratory_record.hpp"
+
+namespace repose::study {
+namespace {
+
+using io::Json;
+
+constexpr const char* log_name = "finished.jsonl";
+constexpr std::size_t tests_at_once = 64;  ///< are driven side by side before they are written
+
+/// A finished test, and its rows of curves.csv.
+struct Driven {
+  PointFigures figures;
+  std::vector<double> rows;
+};
+
+Driven driven(const PointCase& one, std::size_t run, std::span<const point::Quantity> quantities) {
+  Driven out;
+  if (!one.test) {
+    out.figures = {"refused", one.refusal, 0, 0.0, Json::object()};
+    return out;
+  }
+  const TestResult result = drive(*one.test);
+  const std::size_t rows = result.curve.rows.size();
+  out.figures = {result.failed() ? "failed" : "done", result.reason, rows, result.wall_s,
+                 Json::object()};
+  const std::vector<std::vector<double>> columns = columns_of(*one.test, result, quantities);
+  const std::vector<point::Path::Place> places = one.test->test.path.places();
+  for (std::size_t row = 0; row < rows; ++row) {
+    out.rows.push_back(static_cast<double>(run));
+    for (const std::vector<double>& column : columns) out.rows.push_back(column[row] + 0.0);
+    const auto [stage, cycle] = places[static_cast<std::size_t>(result.curve.rows[row].leg)];
+    out.rows.push_back(stage);
+    out.rows.push_back(cycle);
+  }
+  if (rows == 0) return out;
+  Json& figures = out.figures.figures;
+  figures["fraction"] = result.curve.outcome.fraction;
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    if (std::isfinite(columns[i].back()))
+      figures[fmt::format("end_{}", point::column_name(quantities[i]))] = columns[i].back();
+  const Json laboratory = laboratory_json(result.figures);
+  for (const Json::Member& member : laboratory.items())
+    if (!member.value.is_array()) figures[member.key] = member.value;
+  return out;
+}
+
+}  // namespace
+
+std::vector<point::Quantity> PointSweep::quantities() const {
+  std::vector<bool> used(point::quantity_count);
+  for (const PointCase& one : cases_)
+    if (one.test)
+      for (const point::Quantity q : point::columns_of(find_law(one.test->law), one.test->test))
+        used[static_cast<std::size_t>(q)] = true;
+  std::vector<point::Quantity> list;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i]) list.push_back(static_cast<point::Quantity>(i));
+  return list;
+}
+
+/// The log's complete lines, in the order of the runs; what is behind a broken one is not kept.
+void PointSweep::take_up(const io::ResultFolder& folder) {
+  std::ifstream log(folder.file(log_name));
+  for (std::string line; finished_.size() < cases_.size() && std::getline(log, line);) {
+    const std::optional<Json> entry = Json::try_parse(line);
+    if (!entry || !entry->contains("figures") ||
+        entry->value("run", std::size_t{0}) != finished_.size() + 1)
+      break;
+    finished_.push_back({entry->at("status").get<std::string>(),
+                         entry->at("reason").get<std::string>(),
+                         entry->at("rows").get<std::size_t>(), entry->at("wall_s").get<double>(),
+                         entry->at("figures")});
+  }
+  kept_ = finished_.size();
+}
+
+io::ExitCode PointSweep::run(const io::ResultFolder& folder, int threads, bool resume) {
+  if (resume) take_up(folder);
+  const std::vector<point::Quantity> columns = quantities();
+  std::vector<std::string> names{"run"};
+  for (const point::Quantity q : columns) names.emplace_back(point::column_name(q));
+  names.emplace_back("stage");
+  names.emplace_back("cycle");
+  const std::filesystem::path file = folder.file("curves.csv");
+  io::RowWriter curves = kept_ > 0
+                             ? io::RowWriter::continued(file, names, static_cast<double>(kept_))
+                             : io::RowWriter::create(file, names);
+  std::string log;
+  for (std::size_t k = 0; k < kept_; ++k) log += log_line(k);
+  folder.write_file(log_name, log, io::Outlives::kill);
+  std::ofstream more(folder.file(log_name), std::ios::app | std::ios::binary);
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  const io::InterruptGuard interrupt;
+  while (finished_.size() < cases_.size()) {
+    if (interrupt.requested()) return io::ExitCode::interrupted;
+    const std::size_t first = finished_.size();
+    std::vector<Driven> block(std::min(tests_at_once, cases_.size() - first));
+    arena.execute([&] {
+      tbb::parallel_for(std::size_t{0}, block.size(), [&](std::size_t i) {
+        block[i] = driven(cases_[first + i], first + i + 1, columns);
+      });
+    });
+    for (Driven& one : block) {
+      curves.rows(one.rows);
+      finished_.push_back(std::move(one.figures));
+      more << log_line(finished_.size() - 1);
+    }
+    if (!more.flush()) throw io::IoError(folder.file(log_name), "cannot write", errno);
+  }
+  return io::ExitCode::done;
+}
+
+std::string PointSweep::log_line(std::size_t run) const {
+  const PointFigures& one = finished_[run];
+  return Json{{"run", run + 1},   {"status", one.status}, {"reason", one.reason},
+              {"rows", one.rows}, {"wall_s", one.wall_s}, {"figures", one.figures}}
+             .dump() +
+         "\n";
+}
+
+std::string PointSweep::table() const {
+  std::vector<std::string> names;
+  for (const PointFigures& one : finished_)
+    for (const Json::Member& member : one.figures.items())
+      if (std::find(names.begin(), names.end(), member.key) == names.end())
+        names.push_back(member.key);
+  std::string text = "run";
+  for (const std::string& key : keys_) text += "," + io::csv_cell(key);
+  text += ",status,rows";
+  for (const std::string& name : names) text += "," + name;
+  text += ",reason\n";
+  for (std::size_t run = 0; run < finished_.size(); ++run) {
+    const PointFigures& one = finished_[run];
+    text += fmt::format("{}", run + 1);
+    for (const std::string& value : cases_[run].values) text += "," + io::csv_cell(value);
+    text += fmt::format(",{},{}", one.status, one.rows);
+    for (const std::string& name : names) {
+      text += ",";
+      const Json* figure = one.figures.find(name);
+      if (figure == nullptr) continue;
+      text += figure->is_string() ? io::csv_cell(figure->get<std::string>())
+                                  : fmt::format("{}", figure->get<double>());
+    }
+    text += "," + io::csv_cell(one.reason) + "\n";
+  }
+  return text;
+}
+
+std::size_t PointSweep::count(std::string_view status) const {
+  return static_cast<std::size_t>(
+      std::count_if(finished_.begin(), finished_.end(),
+                    [&](const PointFigures& one) { return one.status == status; }));
+}
+
+double PointSweep::driving_s() const {
+  double sum = 0.0;
+  for (const PointFigures& one : finished_) sum += one.wall_s;
+  return sum;
+}
+
+}  // namespace repose::study

@@ -1,0 +1,65 @@
+#include "study/point/test_result.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "study/run/run_record.hpp"
+
+namespace repose::study {
+
+TestResult drive(const input::PointTestFile& file) {
+  TestResult result;
+  result.law = &find_law(file.law);
+  result.theta = checked_parameters(file.law);
+  const double begun = usage().wall_s;
+  point::simulate(*result.law, result.theta, file.test, result.curve);
+  result.wall_s = usage().wall_s - begun;
+  result.reason = point::explain(*result.law, result.theta, file.test, result.curve);
+  result.figures = point::laboratory_figures(*result.law, result.theta, file.test, result.curve,
+                                             file.secants_at);
+  return result;
+}
+
+StageColumns stage_columns(const point::Path& path) {
+  const std::vector<point::Path::Place> places = path.places();
+  const bool cycles =
+      std::any_of(places.begin(), places.end(), [](const auto& at) { return at.cycle > 0; });
+  return {cycles || places.back().stage > 1, cycles};
+}
+
+std::vector<std::vector<double>> columns_of(const input::PointTestFile& file,
+                                            const TestResult& result,
+                                            std::span<const point::Quantity> quantities) {
+  std::vector<std::vector<double>> columns;
+  for (const point::Quantity q : quantities)
+    point::read_column(*result.law, result.theta, file.test, result.curve, q,
+                       columns.emplace_back());
+  return columns;
+}
+
+std::string curve_csv(const input::PointTestFile& file, const TestResult& result) {
+  std::string text;
+  const std::vector<point::Quantity> quantities = point::columns_of(*result.law, file.test);
+  for (const point::Quantity q : quantities)
+    text += (text.empty() ? "" : ",") + std::string(point::column_name(q));
+  const std::vector<std::vector<double>> columns = columns_of(file, result, quantities);
+  const auto [stage, cycle] = stage_columns(file.test.path);
+  if (stage) text += ",stage";
+  if (cycle) text += ",cycle";
+  text += "\n";
+  const std::vector<point::Path::Place> places = file.test.path.places();
+  const auto out = std::back_inserter(text);
+  for (std::size_t row = 0; row < result.curve.rows.size(); ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      fmt::format_to(out, "{}{}", i == 0 ? "" : ",", columns[i][row] + 0.0);
+    const point::Path::Place at = places[static_cast<std::size_t>(result.curve.rows[row].leg)];
+    if (stage) fmt::format_to(out, ",{}", at.stage);
+    if (cycle) fmt::format_to(out, ",{}", at.cycle);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace repose::study
