@@ -253,7 +253,12 @@ Noise estimate_noise(const Problem& problem, const VectorXd& r, const MatrixXd& 
                         ? 1.0
                         : 0.0;
   for (const bool last : {false, true}) {
-    for (int sweep = 0; sweep < 100; ++sweep) {
+    // Each correction as if the expected sums followed their own quantity alone. They do not: where
+    // correlations are strong, h moves a ratio of sums by more than itself, and whole corrections
+    // swing about the solution without end. So after every twenty they are halved.
+    double gain = 1.0;
+    for (int sweep = 0; sweep < 160; ++sweep) {
+      if (sweep > 0 && sweep % 20 == 0) gain *= 0.5;
       const Expected expected(noise, U);
       const Noise before = noise;
       double change = 0.0;
@@ -263,12 +268,12 @@ Noise estimate_noise(const Problem& problem, const VectorXd& r, const MatrixXd& 
         const Sums e = expected.of(i, i);
         size.push_back(e.same);
         if (!(own[i].same > 0.0 && e.same > 0.0)) continue;
-        if (!c.declared) c.sd *= std::sqrt(own[i].same / e.same);
+        if (!c.declared) c.sd *= std::pow(own[i].same / e.same, 0.5 * gain);
         if (follows[i]) {
           // a ratio of two sums is 2ρ/n too small in the mean (Marriott & Pope 1954)
           const double wanted = own[i].next / own[i].same + 2.0 * c.rho / c.freedom;
           const double most = strongest(c.block.rows);
-          c.rho = std::clamp(c.rho + wanted - e.next / e.same, last ? 0.0 : -most, most);
+          c.rho = std::clamp(c.rho + gain * (wanted - e.next / e.same), last ? 0.0 : -most, most);
         }
         change = std::max({change, std::abs(c.rho - before.channels[i].rho),
                            std::abs(c.sd / before.channels[i].sd - 1.0)});
@@ -281,7 +286,7 @@ Noise estimate_noise(const Problem& problem, const VectorXd& r, const MatrixXd& 
           const double wanted = s.same / std::sqrt(own[i].same * own[j].same) -
                                 expected.of(i, j).same / std::sqrt(size[i] * size[j]);
           noise.between(p, q) = noise.between(q, p) =
-              std::clamp(before.between(p, q) + wanted, -0.98, 0.98);
+              std::clamp(before.between(p, q) + gain * wanted, -0.98, 0.98);
           change = std::max(change, std::abs(noise.between(p, q) - before.between(p, q)));
         }
       mend(noise.between);

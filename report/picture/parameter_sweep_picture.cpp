@@ -10,7 +10,7 @@
 namespace repose::report {
 namespace {
 
-constexpr std::size_t most_names = 8;     ///< with more, the legend would be the picture
+constexpr std::size_t most_names = 14;    ///< with more, the legend would be the picture
 constexpr std::size_t most_curves = 200;  ///< with more, evenly chosen ones
 
 struct Panel {
@@ -62,6 +62,17 @@ std::string values_text(const std::vector<std::string>& keys,
   return text;
 }
 
+/// One run's curve: as long as there are few, solid in seven colours and then dashed.
+void curve(Axes& axes, const std::string& name, std::size_t k, bool few,
+           const std::vector<double>& x, const std::vector<double>& y) {
+  constexpr std::size_t colours = 7;  // until they start again
+  const Style style{cycle_colour(k), few ? 1.8 : 0.8};
+  if (few && k >= colours)
+    axes.dashed(name, x, y, style);
+  else
+    axes.line(name, x, y, style);
+}
+
 }  // namespace
 
 Figure point_sweep_picture(const study::PointSweep& sweep, const std::string& name,
@@ -92,9 +103,10 @@ Figure point_sweep_picture(const study::PointSweep& sweep, const std::string& na
         xs.push_back(panel.x_factor * x[i]);
         ys.push_back(panel.y_over_x ? y[i] / x[i] : panel.y_factor * y[i]);
       }
-      const bool named = sweep.runs() <= most_names && &axes == figure.panels().front().get();
-      axes.line(named ? values_text(sweep.keys(), sweep.cases()[run].values) : "", xs, ys,
-                {cycle_colour(run / step), sweep.runs() <= most_names ? 1.8 : 0.8});
+      const bool few = sweep.runs() <= most_names;
+      const bool named = few && &axes == figure.panels().front().get();
+      curve(axes, named ? values_text(sweep.keys(), sweep.cases()[run].values) : "", run / step,
+            few, xs, ys);
     }
   }
   return figure;
@@ -127,8 +139,8 @@ Figure scene_sweep_picture(const study::SceneSweep& sweep, const std::string& na
       if (x == table.end() || y == table.end()) continue;
       const bool few = sweep.cases().size() <= most_names;
       const bool named = few && &axes == figure.panels().front().get();
-      axes.line(named ? values_text(sweep.keys(), one.values) : "", x->second, y->second,
-                {cycle_colour(k / step), few ? 1.8 : 0.8});
+      curve(axes, named ? values_text(sweep.keys(), one.values) : "", k / step, few, x->second,
+            y->second);
     }
   }
   return figure;

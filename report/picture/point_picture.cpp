@@ -109,32 +109,30 @@ void yield_surface(Axes& axes, const std::string& name, double M, double p_c, do
   axes.dashed(name, p, q, style);
 }
 
-/// A stage's rows of two columns, each in its own colour; in a stage of cycles the last of them
-/// stands out from those before.
-void stages(Axes& axes, const Source& source, const std::vector<double>& x,
+/// Rows of two columns by stages, each in its own colour; in a stage of cycles the last of them
+/// stands out from those before. The names stand in the first panel.
+void stages(const Figure& figure, Axes& axes, const Source& source, const std::vector<double>& x,
             const std::vector<double>& y, const std::vector<std::size_t>& which) {
-  const bool alone = which.size() == 1;
+  const bool alone = which.size() == 1, named = figure.panels().front().get() == &axes;
   for (const std::size_t k : which) {
     const StageRows& stage = source.stages()[k];
-    const Colour colour = alone ? Colour::blue : cycle_colour(k);
-    const auto part = [&](const std::vector<double>& values, std::size_t from, std::size_t to) {
-      return std::span(values).subspan(from, to - from);
+    const auto line = [&](const std::string& name, std::size_t from, std::size_t to, Style style) {
+      axes.line(named ? name : "", std::span(x).subspan(from, to - from),
+                std::span(y).subspan(from, to - from), style);
     };
     if (stage.last_cycle > stage.start) {
-      axes.line("cycles", part(x, stage.start, stage.last_cycle),
-                part(y, stage.start, stage.last_cycle), {Colour::sky, 1.0});
-      axes.line("last cycle", part(x, stage.last_cycle - 1, stage.end),
-                part(y, stage.last_cycle - 1, stage.end), {Colour::vermillion});
+      line("cycles", stage.start, stage.last_cycle, {Colour::sky, 1.0});
+      line("last cycle", stage.last_cycle - 1, stage.end, {Colour::purple});
     } else {
-      axes.line(alone || which.size() > 6 ? "" : fmt::format("stage {}", k + 1),
-                part(x, stage.start, stage.end), part(y, stage.start, stage.end), {colour});
+      line(alone || which.size() > 6 ? "" : fmt::format("stage {}", k + 1), stage.start, stage.end,
+           {alone ? Colour::blue : cycle_colour(k)});
     }
   }
 }
 
-void stages(Axes& axes, const Source& source, const std::vector<double>& x,
+void stages(const Figure& figure, Axes& axes, const Source& source, const std::vector<double>& x,
             const std::vector<double>& y) {
-  stages(axes, source, x, y, source.all_stages());
+  stages(figure, axes, source, x, y, source.all_stages());
 }
 
 void stress_path(Figure& figure, const Source& source, bool undrained) {
@@ -174,7 +172,7 @@ void stress_path(Figure& figure, const Source& source, bool undrained) {
   if (source.stages().size() == 1 && source.stages().front().last_cycle == 0)
     axes.line("effective stress", p, q, {Colour::blue});
   else
-    stages(axes, source, p, q);
+    stages(figure, axes, source, p, q);
 }
 
 void against_axial_strain(Figure& figure, const Source& source, bool undrained) {
@@ -184,17 +182,17 @@ void against_axial_strain(Figure& figure, const Source& source, bool undrained) 
   stress.title = "stress and strain";
   stress.x.label = source.strain_label("ε_{a}");
   stress.y.label = "q (kPa)";
-  stages(stress, source, eps_a, source.column(Quantity::q, kPa), sheared);
+  stages(figure, stress, source, eps_a, source.column(Quantity::q, kPa), sheared);
   Axes& volume = figure.add_axes();
   volume.x.label = source.strain_label("ε_{a}");
   if (undrained) {
     volume.title = "excess pore pressure";
     volume.y.label = "u (kPa)";
-    stages(volume, source, eps_a, source.column(Quantity::u, kPa), sheared);
+    stages(figure, volume, source, eps_a, source.column(Quantity::u, kPa), sheared);
   } else {
     volume.title = "volume (compression positive)";
     volume.y.label = source.strain_label("ε_{v}");
-    stages(volume, source, eps_a, source.column(Quantity::eps_v, percent), sheared);
+    stages(figure, volume, source, eps_a, source.column(Quantity::eps_v, percent), sheared);
   }
 }
 
@@ -229,7 +227,7 @@ void compression_plane(Figure& figure, const Source& source) {
   };
   line("isotropic compression", "N", Colour::grey);
   line("critical state", "Gamma", Colour::black);
-  stages(axes, source, p, v);
+  stages(figure, axes, source, p, v);
 }
 
 /// One-dimensional compression as it is drawn in a laboratory: e (or ε_a) over log σ′_a, and K0.
@@ -243,11 +241,11 @@ void oedometer_panels(Figure& figure, const Source& source) {
     curve.y.label = "e";
     std::vector<double> e = v;
     for (double& x : e) x -= 1.0;
-    stages(curve, source, sigma_a, e);
+    stages(figure, curve, source, sigma_a, e);
   } else {
     curve.title = "compression curve (compression positive)";
     curve.y.label = source.strain_label("ε_{a}");
-    stages(curve, source, sigma_a, source.column(Quantity::eps_a, percent));
+    stages(figure, curve, source, sigma_a, source.column(Quantity::eps_a, percent));
   }
   stress_path(figure, source, false);
   Axes& ratio = figure.add_axes();
@@ -256,7 +254,7 @@ void oedometer_panels(Figure& figure, const Source& source) {
   ratio.y.label = "K_{0} = σ′_{r}/σ′_{a}";
   std::vector<double> K0 = source.column(Quantity::sigma_r, kPa);
   for (std::size_t row = 0; row < K0.size(); ++row) K0[row] /= sigma_a[row];
-  stages(ratio, source, sigma_a, K0);
+  stages(figure, ratio, source, sigma_a, K0);
 }
 
 /// v (or ε_v) over ln p′.
@@ -266,7 +264,8 @@ void isotropic_panels(Figure& figure, const Source& source) {
   volume.title = "volume (compression positive)";
   volume.x.label = "p′ (kPa)";
   volume.y.label = source.strain_label("ε_{v}");
-  stages(volume, source, source.column(Quantity::p, kPa), source.column(Quantity::eps_v, percent));
+  stages(figure, volume, source, source.column(Quantity::p, kPa),
+         source.column(Quantity::eps_v, percent));
 }
 
 void shear_panels(Figure& figure, const Source& source) {
@@ -276,12 +275,12 @@ void shear_panels(Figure& figure, const Source& source) {
   stress.title = "shear stress";
   stress.x.label = "γ (%)";
   stress.y.label = "τ (kPa)";
-  stages(stress, source, gamma, tau);
+  stages(figure, stress, source, gamma, tau);
   Axes& path = figure.add_axes();
   path.title = "stress path on the horizontal plane";
   path.x.label = "σ′_{yy} (kPa)";
   path.y.label = "τ (kPa)";
-  stages(path, source, source.column(Quantity::sigma_a, kPa), tau);
+  stages(figure, path, source, source.column(Quantity::sigma_a, kPa), tau);
   const auto I = source.column(Quantity::I);
   if (std::isfinite(source.parameter("d"))) {
     Axes& axes = figure.add_axes();
@@ -312,7 +311,7 @@ void shear_panels(Figure& figure, const Source& source) {
     axes.title = "volume (compression positive)";
     axes.x.label = "γ (%)";
     axes.y.label = source.strain_label("ε_{v}");
-    stages(axes, source, gamma, source.column(Quantity::eps_v, percent));
+    stages(figure, axes, source, gamma, source.column(Quantity::eps_v, percent));
   }
 }
 
