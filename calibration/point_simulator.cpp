@@ -105,6 +105,27 @@ class PointSimulator final : public Simulator {
     }
   }
 
+  std::shared_ptr<const Simulator> drawn(std::span<const std::string> channels) const override {
+    if (e_.rows == Rows::leg_ends) return {};  // a flow curve has nothing between its rates
+    PointExperiment other = e_;
+    other.rows = Rows::along;
+    other.y.clear();
+    for (const std::string& name : channels) {
+      const std::optional<Quantity> quantity = point::find_quantity(name);
+      if (!quantity) return {};
+      other.y.push_back(*quantity);
+    }
+    constexpr int rows = 400;  // of the picture, about; a leg has 2 to 20
+    const auto legs = static_cast<int>(other.test.path.legs.size());
+    const int points = std::clamp(rows / std::max(legs, 1), 2, 20);
+    for (point::Leg& leg : other.test.path.legs) {
+      point::LegSpec spec = leg.spec();
+      spec.points = std::max(spec.points, points);
+      leg = point::Leg(std::move(spec));
+    }
+    return std::make_shared<PointSimulator>(std::move(other));
+  }
+
   void simulate(std::span<const double> inputs, std::span<const int> wanted,
                 Response& response) const override {
     Scratch& scratch = scratch_.local();

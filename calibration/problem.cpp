@@ -202,6 +202,20 @@ Misfit Problem::predict(std::size_t target, const VectorXd& z, Response* respons
   return m;
 }
 
+Response Problem::drawn(std::size_t target, const VectorXd& z,
+                        std::span<const std::string> channels) const {
+  const Target& t = targets_[target];
+  Response response;
+  const std::shared_ptr<const Simulator> simulator = t.simulator->drawn(channels);
+  if (!simulator) return response;
+  const VectorXd values = space_.values(clipped(z));
+  std::vector<double> inputs = t.inputs;
+  for (const Binding& b : t.bindings)
+    inputs[static_cast<std::size_t>(b.input)] = values[b.parameter];
+  simulator->simulate(inputs, {}, response);
+  return response;
+}
+
 Spent Problem::spent() const {
   const std::lock_guard lock(mutex_);
   return {evaluations_.load(), gradients_.load(), paths_.load(), failures_};

@@ -59,6 +59,10 @@ class Problem {
 
   /// Simulation of one target (fitted or held out) at z.
   Misfit predict(std::size_t target, const Eigen::VectorXd& z, Response* response = nullptr) const;
+  /// The same with rows close to each other, for a picture (Simulator::drawn); without rows where
+  /// there are none.
+  Response drawn(std::size_t target, const Eigen::VectorXd& z,
+                 std::span<const std::string> channels) const;
 
   Spent spent() const;
   /// Every optimiser asks this before each trial and, if true, ends with its best point so far.

@@ -37,11 +37,14 @@ class Simulator {
   /// Half the span over which differences are taken, in units of a parameter's bounds: small for a
   /// smooth answer, larger than the grain of one that is not (a full simulation's front).
   virtual double difference_step() const { return 1e-5; }
-  /// Simulates. wanted: positions of the inputs to differentiate by; empty for none. Never throws
-  /// for numbers; must be callable from several threads at once.
+  /// For a picture: the same experiment with rows close to each other along its way, of the
+  /// channels named; nothing where there are no such rows or channels.
+  virtual std::shared_ptr<const Simulator> drawn(std::span<const std::string>) const { return {}; }
   /// The same experiment with its abscissae multiplied, to tell whether a misfit is one of units;
   /// nothing where they are not its own or lead nowhere.
   virtual std::shared_ptr<const Simulator> with_abscissae_times(double) const { return {}; }
+  /// Simulates. wanted: positions of the inputs to differentiate by; empty for none. Never throws
+  /// for numbers; must be callable from several threads at once.
   virtual void simulate(std::span<const double> inputs, std::span<const int> wanted,
                         Response& response) const = 0;
 };

@@ -14,9 +14,10 @@ namespace repose::input {
 
 /// What the pictures need of a target beside its numbers.
 struct TargetAbout {
-  std::string data;      ///< the table as the fit file names it
-  std::string x_label;   ///< "eps_a"
-  std::string strain{};  ///< "logarithmic" or "engineering": of the data; empty for a scene
+  std::string data;       ///< the table as the fit file names it
+  std::string x_label;    ///< "eps_a"
+  std::string strain{};   ///< "logarithmic" or "engineering": of the data; empty for a scene
+  bool triaxial = false;  ///< its last stage is one: q over p′ is worth a picture
 };
 
 struct FitFile {

@@ -58,6 +58,7 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
     const bool strained = is_strain_driven(e.test.path);
     const Quantity x = e.x;
     const bool along = e.rows == calibration::Rows::along;
+    about.triaxial = e.test.path.legs.back().spec().kind == point::Kind::triaxial;
     target.simulator = calibration::make_point_simulator(std::move(e));
     if (along && strained && target.compare == Compare::interpolate)
       check_reach(table, x, data, target);

@@ -23,15 +23,41 @@ std::vector<double> scaled(const VectorXd& v, double factor) {
 /// A column's name in a picture and the factor from SI: "q_Pa" → ("q (kPa)", 1e-3).
 /// strain: which strain a strain is.
 std::pair<std::string, double> label(const std::string& column, const std::string& strain) {
-  if (column.ends_with("_Pa"))
-    return {fmt::format("{} (kPa)", column.substr(0, column.size() - 3)), 1e-3};
-  if (column.starts_with("eps_"))
-    return {fmt::format("eps_{{{}}} ({}%)", column.substr(4), strain.empty() ? "" : strain + ", "),
-            100.0};
-  if (column == "gamma") return {"gamma (%)", 100.0};
-  if (const auto unit = column.rfind('_'); unit != std::string::npos && column != "rho_0")
-    return {fmt::format("{} ({})", column.substr(0, unit), column.substr(unit + 1)), 1.0};
-  return {column, 1.0};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> symbols{
+      std::pair{"eps_a", "ε_{a}"},
+      {"eps_r", "ε_{r}"},
+      {"eps_v", "ε_{v}"},
+      {"eps_q", "ε_{q}"},
+      {"gamma", "γ"},
+      {"p", "p′"},
+      {"q", "q"},
+      {"sigma_a", "σ′_{a}"},
+      {"sigma_r", "σ′_{r}"},
+      {"tau", "τ"},
+      {"mu", "μ"},
+      {"shear_rate", "shear rate"}};
+  std::string name = column, unit;
+  double factor = 1.0;
+  if (column.ends_with("_Pa")) {
+    name.resize(name.size() - 3);
+    unit = "kPa";
+    factor = 1e-3;
+  } else if (column.starts_with("eps_") || column == "gamma") {
+    unit = column == "gamma" || strain.empty() ? "%" : strain + ", %";
+    factor = 100.0;
+  } else if (column.ends_with("_per_s")) {
+    name.resize(name.size() - 6);
+    unit = "1/s";
+  } else if (const auto at = column.rfind('_'); at != std::string::npos && column != "rho_0") {
+    name.resize(at);
+    unit = column.substr(at + 1);
+  }
+  for (const auto& [plain, symbol] : symbols)
+    if (name == plain) {
+      name = symbol;
+      break;
+    }
+  return {unit.empty() ? name : fmt::format("{} ({})", name, unit), factor};
 }
 
 /// Standard deviation of every simulated value, from the covariance of the parameters: two
@@ -66,6 +92,48 @@ MatrixXd prediction_sd(const calibration::Problem& problem, const study::FitResu
   return variance.cwiseMax(0.0).cwiseSqrt();
 }
 
+/// q over p′ of a triaxial target: what is fitted along its whole way, and what is measured where
+/// the data tell p′ (themselves, or undrained by u: p′ = p′_0 + q/3 − u).
+void stress_path(Figure& figure, const calibration::Target& t, const calibration::Response& path) {
+  constexpr double kPa = 1e-3;
+  const auto channel = [&](std::string_view name) -> const VectorXd* {
+    for (const calibration::Channel& c : t.channels)
+      if (c.name == name) return &c.observed;
+    return nullptr;
+  };
+  const VectorXd *q = channel("q_Pa"), *p = channel("p_Pa"), *u = channel("u_Pa");
+  Axes& axes = figure.add_axes();
+  axes.title = t.name + ": stress path";
+  axes.x.label = "p′ (kPa)";
+  axes.y.label = "q (kPa)";
+  const Style ring{Colour::black, 1.0, Marker::ring, 5.0};
+  if (q != nullptr && p != nullptr) {
+    axes.points("measured", scaled(*p, kPa), scaled(*q, kPa), ring);
+  } else if (q != nullptr && u != nullptr) {
+    const VectorXd from_u = ((path.y(0, 0) + q->array() / 3.0) - u->array()).matrix();
+    axes.points("measured (from u)", scaled(from_u, kPa), scaled(*q, kPa), ring);
+  }
+  axes.line(t.held_out ? "predicted" : "fitted", scaled(path.y.col(0), kPa),
+            scaled(path.y.col(1), kPa), {Colour::blue});
+}
+
+/// "correlation: lambda and Gamma 0.95 at most"
+std::string strongest_correlation(const input::FitFile& file, const study::FitResult& result) {
+  const MatrixXd& r = result.uncertainty.correlation;
+  Index row = 0, column = 0;
+  for (Index i = 0; i < r.rows(); ++i)
+    for (Index j = 0; j < i; ++j)
+      if (std::isfinite(r(i, j)) &&
+          (row == column || std::abs(r(i, j)) > std::abs(r(row, column)))) {
+        row = i;
+        column = j;
+      }
+  if (row == column) return "correlation";
+  const auto name = [&](Index i) { return file.free[static_cast<std::size_t>(i)].name; };
+  return fmt::format("correlation: strongest {} and {}, {:.2f}", name(column), name(row),
+                     r(row, column));
+}
+
 }  // namespace
 
 Figure fit_picture(const input::FitFile& file, const calibration::Problem& problem,
@@ -85,6 +153,9 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
     const bool log_x = !even && t.x.minCoeff() > 0.0 && t.x.maxCoeff() > 8.0 * t.x.minCoeff();
     const AxisScale scale = log_x ? AxisScale::logarithmic : AxisScale::linear;
     const auto x = scaled(t.x, x_factor);
+    std::vector<std::string> names;
+    for (const calibration::Channel& c : t.channels) names.push_back(c.name);
+    const calibration::Response drawn = problem.drawn(k, result.best().z, names);
     // a band needs x in order; loading and unloading would fold it
     const bool ordered = std::is_sorted(x.begin(), x.end());
     for (std::size_t c = 0; c < t.channels.size(); ++c) {
@@ -98,7 +169,13 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
       if (ordered) axes.band("", x, scaled(s - b, factor), scaled(s + b, factor), {Colour::blue});
       axes.points("measured", x, scaled(t.channels[c].observed, factor),
                   {Colour::black, 1.0, Marker::ring, 5.0});
-      axes.line(t.held_out ? "predicted" : "fitted", x, scaled(s, factor), {Colour::blue});
+      // between the rows as well, where the simulation has something there
+      const char* const name = t.held_out ? "predicted" : "fitted";
+      if (drawn.x.size() > t.x.size())
+        axes.line(name, scaled(drawn.x, x_factor), scaled(drawn.y.col(col), factor),
+                  {Colour::blue});
+      else
+        axes.line(name, x, scaled(s, factor), {Colour::blue});
       Axes& residuals = figure.add_axes();
       residuals.title = "simulated - measured";
       residuals.x = {x_label, scale};
@@ -108,6 +185,13 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
       residuals.points("", x, scaled(s - t.channels[c].observed, factor),
                        {Colour::vermillion, 1.0, Marker::circle, 5.0});
     }
+  }
+  constexpr std::array<const char*, 2> path_channels{"p_Pa", "q_Pa"};
+  for (std::size_t k = 0; k < file.targets.size(); ++k) {
+    if (!file.about[k].triaxial) continue;
+    const calibration::Response path = problem.drawn(
+        k, result.best().z, std::vector<std::string>(path_channels.begin(), path_channels.end()));
+    if (path.x.size() > 1) stress_path(figure, file.targets[k], path);
   }
   return figure;
 }
@@ -134,7 +218,7 @@ Figure fit_diagnostics(const input::FitFile& file, const study::FitResult& resul
   }
   // parameter i against j, coloured by correlation: a table that is read at a glance
   Axes& correlation = figure.add_axes();
-  correlation.title = "correlation";
+  correlation.title = strongest_correlation(file, result);
   std::vector<double> a, b, r;
   const Index n = result.uncertainty.correlation.rows();
   for (Index i = 0; i < n; ++i)
