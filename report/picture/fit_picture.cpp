@@ -92,6 +92,20 @@ MatrixXd prediction_sd(const calibration::Problem& problem, const study::FitResu
   return variance.cwiseMax(0.0).cwiseSqrt();
 }
 
+/// y(x) between rows in order of x, and the end values beyond them.
+VectorXd interpolated(const VectorXd& x, const VectorXd& y, const VectorXd& at) {
+  VectorXd out(at.size());
+  for (Index i = 0; i < at.size(); ++i) {
+    const auto upper = std::upper_bound(x.begin(), x.end(), at[i]) - x.begin();
+    const Index right = std::clamp<Index>(upper, 0, x.size() - 1),
+                left = std::max<Index>(right - 1, 0);
+    const double span = x[right] - x[left];
+    const double share = span > 0.0 ? std::clamp((at[i] - x[left]) / span, 0.0, 1.0) : 1.0;
+    out[i] = y[left] + share * (y[right] - y[left]);
+  }
+  return out;
+}
+
 /// q over p′ of a triaxial target: what is fitted along its whole way, and what is measured where
 /// the data tell p′ (themselves, or undrained by u: p′ = p′_0 + q/3 − u).
 void stress_path(Figure& figure, const calibration::Target& t, const calibration::Response& path) {
@@ -105,6 +119,7 @@ void stress_path(Figure& figure, const calibration::Target& t, const calibration
   Axes& axes = figure.add_axes();
   axes.title = t.name + ": stress path";
   axes.x.label = "p′ (kPa)";
+  axes.x.lower = 0.0;  // a path that hardly moves must not fill the picture
   axes.y.label = "q (kPa)";
   const Style ring{Colour::black, 1.0, Marker::ring, 5.0};
   if (q != nullptr && p != nullptr) {
@@ -166,16 +181,18 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
       axes.title = t.name + (t.held_out ? " (held out, predicted)" : "");
       axes.x = {x_label, scale};
       axes.y.label = y_label;
-      if (ordered) axes.band("", x, scaled(s - b, factor), scaled(s + b, factor), {Colour::blue});
+      // between the rows as well, where the simulation has something there
+      const bool between = drawn.x.size() > t.x.size();
+      const VectorXd curve = between ? VectorXd(drawn.y.col(col)) : s;
+      const VectorXd half_band = between ? interpolated(t.x, b, drawn.x) : b;
+      const auto curve_x = between ? scaled(drawn.x, x_factor) : x;
+      if (ordered)
+        axes.band("", curve_x, scaled(curve - half_band, factor), scaled(curve + half_band, factor),
+                  {Colour::blue});
       axes.points("measured", x, scaled(t.channels[c].observed, factor),
                   {Colour::black, 1.0, Marker::ring, 5.0});
-      // between the rows as well, where the simulation has something there
-      const char* const name = t.held_out ? "predicted" : "fitted";
-      if (drawn.x.size() > t.x.size())
-        axes.line(name, scaled(drawn.x, x_factor), scaled(drawn.y.col(col), factor),
-                  {Colour::blue});
-      else
-        axes.line(name, x, scaled(s, factor), {Colour::blue});
+      axes.line(t.held_out ? "predicted" : "fitted", curve_x, scaled(curve, factor),
+                {Colour::blue});
       Axes& residuals = figure.add_axes();
       residuals.title = "simulated - measured";
       residuals.x = {x_label, scale};
