@@ -17,24 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files beside a missing one whose name is close to it.
-std::string similar_file(const fs::path& file) {
-  std::vector<std::string> names;
-  std::error_code error;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == ".toml") names.push_back(it->path().filename().string());
-  std::sort(names.begin(), names.end());
-  const std::string wanted = file.filename().string();
-  for (const std::string& name : names)
-    if (name == wanted + ".toml") return (file.parent_path() / name).string();
-  for (const std::string& name : names)
-    if (name.starts_with(file.stem().string())) return (file.parent_path() / name).string();
-  const std::vector<std::string_view> views(names.begin(), names.end());
-  const std::string near = nearest_name(wanted, views);
-  return near.empty() ? "" : (file.parent_path() / near).string();
-}
-
 std::string read_text(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -108,6 +90,40 @@ std::vector<PathStep> split_path(std::string_view path) {
   }
 }
 
+/// What is usually meant where TOML cannot be read: its parser tells what it did not expect.
+std::string toml_advice(std::string_view text, unsigned line, std::string_view complaint) {
+  const auto says = [&](std::string_view part) {
+    return complaint.find(part) != std::string_view::npos;
+  };
+  for (unsigned k = 1; k < line && text.find('\n') != std::string_view::npos; ++k)
+    text.remove_prefix(text.find('\n') + 1);
+  const std::string_view row = text.substr(0, text.find('\n'));
+  const std::size_t equals = row.find('=');
+  const std::string_view after = equals == std::string_view::npos ? "" : row.substr(equals + 1);
+  if (says("cannot redefine")) return "the key stands twice; leave one out";
+  if (says("expected '='")) return "a line is written as key = value";
+  if (std::count(row.begin(), row.end(), '"') % 2 == 1)
+    return "a text that begins with a quote ends with one";
+  const bool after_number = !trimmed(after).empty() &&
+                            (std::isdigit(static_cast<unsigned char>(trimmed(after).front())) ||
+                             trimmed(after).front() == '-' || trimmed(after).front() == '.');
+  if (says("saw ','") && after_number) return "a number has a point, as in 0.95";
+  if (says("expected a comment or whitespace") && after_number)
+    return "a number stands alone: units are SI and belong into a comment, 207e3  # Pa";
+  if (says("saw") && !after.empty() && after_number == false)
+    return "texts stand in quotes, lists in [ ], tables in { }";
+  return "";
+}
+
+/// What a parser says of a place in a text, and what to do about it.
+BadInput broken_toml(const toml::parse_error& error, const std::string& name,
+                     std::string_view text) {
+  const toml::source_position at = error.source().begin;
+  const std::string advice = toml_advice(text, at.line, error.description());
+  return BadInput({fmt::format("{}: {}{}", to_string(Origin{name, at.line, at.column}),
+                               error.description(), advice.empty() ? "" : ": " + advice)});
+}
+
 std::string kind_of(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (node.is_array()) return "a list";
@@ -136,6 +152,24 @@ toml::node* descend(toml::node& parent, const PathStep& step, const std::string&
 }
 
 }  // namespace
+
+std::string similar_file(const fs::path& file) {
+  const std::string extension = file.has_extension() ? file.extension().string() : ".toml";
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == extension) names.push_back(it->path().filename().string());
+  std::sort(names.begin(), names.end());
+  const std::string wanted = file.filename().string();
+  for (const std::string& name : names)
+    if (name == wanted + extension) return (file.parent_path() / name).string();
+  for (const std::string& name : names)
+    if (name.starts_with(file.stem().string())) return (file.parent_path() / name).string();
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  const std::string near = nearest_name(wanted, views);
+  return near.empty() ? "" : (file.parent_path() / near).string();
+}
 
 std::string to_string(const Origin& origin) {
   if (origin.is_override()) return origin.source;
@@ -180,9 +214,7 @@ InputFile InputFile::parse(std::string_view text, std::string name,
   try {
     input.root_ = toml::parse(text, input.name_);
   } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw BadInput({fmt::format("{}: {}", to_string(Origin{input.name_, at.line, at.column}),
-                                error.description())});
+    throw broken_toml(error, input.name_, text);
   }
   const Origin top{input.name_, 1, 1};
   input.origins_[""] = top;
@@ -214,12 +246,12 @@ void InputFile::take_law_over(toml::table& parent, const std::string& path) {
   const fs::path file =
       here.is_override() ? fs::path(*named) : fs::path(here.source).parent_path() / *named;
   toml::table other;
+  std::string text;
   try {
-    other = toml::parse(read_text(file), file.string());
+    text = read_text(file);
+    other = toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
-    throw BadInput({fmt::format("{}: {}", to_string(Origin{file.string(), at.line, at.column}),
-                                error.description())});
+    throw broken_toml(error, file.string(), text);
   } catch (const io::IoError& error) {
     refuse(error.what());
   }

@@ -110,6 +110,9 @@ class InputFile {
 /// letters in another order; "" otherwise.
 std::string closest(std::string_view misspelt, const std::vector<std::string_view>& known);
 
+/// A file beside a missing one whose name is close to its; "" if there is none.
+std::string similar_file(const std::filesystem::path& file);
+
 /// "grid" + "h" = "grid.h", "" + "grid" = "grid".
 std::string join_path(std::string_view table, std::string_view key);
 /// "[grid]", "body[0]", "the file": a table in a sentence.

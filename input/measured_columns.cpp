@@ -90,6 +90,13 @@ MeasuredColumns::MeasuredColumns(TomlReader& reader, std::string_view key, const
   if (name.empty()) return;
   std::filesystem::path file = name;
   if (file.is_relative()) file = std::filesystem::path(reader.file().name()).parent_path() / file;
+  if (!std::filesystem::exists(file)) {
+    const std::string near = similar_file(file);
+    throw io::IoError(file,
+                      fmt::format("there is no such file, which {} names{}",
+                                  to_string(reader.file().origin(reader.path_of(key))),
+                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
   try {
     io::RawTable table = io::load_table(file, format);
     rows_ = io::select_rows(table, filter_);

@@ -67,7 +67,19 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
                          [&](const ParamInfo& p) { return p.name == name; });
     };
     const LawList laws = all_laws();
-    if (std::none_of(laws.begin(), laws.end(), has)) continue;  // reported later
+    if (std::none_of(laws.begin(), laws.end(), has)) {
+      std::vector<std::string_view> known{"shared"};
+      for (const LawInfo& info : laws)
+        if (law_name && info.name == *law_name)
+          for (const ParamInfo& p : info.parameters) known.push_back(p.name);
+      if (known.size() == 1) continue;  // no such law: reported later
+      const std::string near = closest(name, known);
+      problems.push_back(fmt::format(
+          "{}: {} has no parameter '{}'{}", to_string(file.origin("fit." + name)), *law_name, name,
+          near.empty() ? fmt::format("; it has {}", fmt::join(known, ", "))
+                       : fmt::format("; did you mean '{}'?", near)));
+      continue;
+    }
     if (law != nullptr && law->contains(name)) {
       problems.push_back(fmt::format("{}: {} is fixed in [law] and free in [fit]: leave out one",
                                      to_string(file.origin("fit." + name)), name));

@@ -165,14 +165,17 @@ std::vector<Stage> stages_of(TomlReader& table, const StageTable& given,
     stage.duration = given.duration;
     return {stage};
   }
+  std::string_view first;
   for (std::size_t i = 0; i < goal_keys.size(); ++i) {
     if (!given.goals[i]) continue;
     const GoalKey& key = goal_keys[i];
     if (stage.goal) {
-      table.report(key.key, fmt::format("{}: a stage ends at one value; another is given too",
-                                        table.path_of(key.key)));
+      table.report(key.key,
+                   fmt::format("{}: a stage ends at one value, and {} is given too; leave one out",
+                               table.path_of(key.key), table.path_of(first)));
       return {};
     }
+    first = key.key;
     stage.goal = goal_of(table, key.key, key, *given.goals[i], reading);
   }
   if (!stage.goal) {

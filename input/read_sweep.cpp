@@ -148,7 +148,9 @@ void read_table(TomlReader& table, ParameterSets& sets) {
   } catch (const io::TableError& error) {
     table.report("table", error.what());
   } catch (const io::IoError& error) {
-    table.report("table", error.what());
+    const std::string near = similar_file(file);
+    table.report("table", near.empty() ? error.what()
+                                       : fmt::format("{}; did you mean {}?", error.what(), near));
   }
 }
 

@@ -282,6 +282,13 @@ class Judge {
       r_.fit = text_above_first_data() ? Fit::poor : Fit::no_header;
     else
       r_.fit = Fit::poor;
+    // a header with as many rows of data above it as below is a row that went wrong
+    if (r_.header && !r_.header_in_comment) {
+      std::size_t above = 0;
+      for (std::size_t i = 0; i < *r_.header; ++i)
+        above += is_numeric(i) && contents_[i].width == r_.width ? 1 : 0;
+      if (above > 0 && above >= good) r_.fit = std::max(r_.fit, Fit::poor);
+    }
     // one column is no reading of a header that has separators in it
     const std::string_view header = r_.header ? list().records[*r_.header].line : "";
     if (r_.separator == Separator::none && header.find_first_of(",;\t") != std::string_view::npos)

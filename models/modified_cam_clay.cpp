@@ -142,7 +142,8 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
   const double p = pressure(point.stress) + P.p_shift;
   if (!(p > contact_pressure(P)))
     throw InputError(stress_key(given),
-                     "the initial p must be > p_sep: below it the point carries no stress");
+                     "the initial p must be > p_sep, and compression is positive: below it the "
+                     "point carries no stress");
   const double q = mises(point.stress);
   const double p_c_yield = p + square(q / P.M) / p;  // F = 0 solved for p_c (MCC-1)
   const bool volume_is_free = p_c == 0.0;

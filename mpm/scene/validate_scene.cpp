@@ -116,11 +116,13 @@ bool fits(const Scene& scene, double h, bool with_bodies) {
   });
 }
 
-/// The fewest digits of h, up to its double, with which it still fits.
+/// The fewest digits of h, up to its double, that fit and are as many cells.
 std::string shortest(const Scene& scene, double h, bool with_bodies) {
   for (int digits = 1; digits < 17; ++digits) {
     const std::string text = number(h, digits);
-    if (fits(scene, std::stod(text), with_bodies)) return text;
+    const double rounded = std::stod(text);
+    const bool as_many = std::lround(scene.domain[0] / rounded) == std::lround(scene.domain[0] / h);
+    if (as_many && fits(scene, rounded, with_bodies)) return text;
   }
   return number(h, 17);
 }
@@ -144,6 +146,7 @@ std::string nearby_h(const Scene& scene, bool with_bodies) {
     std::string& best = h < scene.h ? below : above;
     if (better(text, best, scene.h)) best = text;
   }
+  if (below == above) return below;
   return below + (below.empty() || above.empty() ? "" : " or ") + above;
 }
 

@@ -50,8 +50,9 @@ void require_same_input(const RunRequest& request, const fs::path& stored) {
   std::vector<std::string> lines = input::differences(there.root(), here.root());
   if (lines.empty()) return;
   for (std::string& line : lines) line = fmt::format("{}: {}", stored.string(), line);
-  lines.push_back(
-      fmt::format("{}: a run is resumed with the input it was begun with", stored.string()));
+  lines.push_back(fmt::format(
+      "{}: a run is resumed with the input it was begun with; without --resume it begins anew",
+      stored.string()));
   throw input::BadInput(std::move(lines));
 }
 
@@ -317,11 +318,15 @@ io::ExitCode Run::stop_at_failure(const std::string& reason) {
 io::ExitCode run_scene(const RunRequest& request) {
   if (request.resume) {
     if (!fs::is_directory(request.folder))
-      throw io::IoError(request.folder, "there is no such result to resume");
+      throw io::IoError(request.folder,
+                        "there is no such result to resume; without --resume it is begun");
     const fs::path checkpoint = io::ResultFolder(request.folder).checkpoint();
     if (!fs::exists(checkpoint)) {
       if (noted_status(request.folder / "summary.json") != "done")
-        throw io::IoError(checkpoint, "there is no checkpoint to resume from");
+        throw io::IoError(
+            checkpoint,
+            "there is no checkpoint to resume from; without --resume the run begins anew");
+      require_same_input(request, request.folder / "input.toml");
       const Voice voice(request);
       voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});
       voice.say(fmt::format("{} is complete: nothing to resume\n", request.folder.string()));

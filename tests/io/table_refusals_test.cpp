@@ -50,6 +50,10 @@ TEST(TableRefusals, say_row_column_cause_and_cure) {
       {"a,b\n", 0, "", "no rows with numbers below the header", "rows that were measured"},
       {"# a,b\n", 0, "", "no rows with numbers", "rows that were measured"},
       {"a;b\nx;y\n", 0, "", "no rows with numbers", "rows that were measured"},
+      // a sheet with decimal commas and one cell too many is still one of semicolons
+      {"L;e [%];q [kPa]\nT1;0,00;0,0\nT1;0,51;57,9\nT1;0,99;87,2\nT1;1,99;115,3;7\nT1;5,02;1,0\n",
+       5, "4", "4 cells, and the header in row 1 names 3 columns (separator: semicolon)",
+       "name all columns"},
       // no text
       {"PK\x03\x04rest", 0, "", "this is a workbook (xlsx, ods)", "save the table as CSV"},
       {"\xD0\xCF\x11\xE0rest", 0, "", "an old Excel workbook", "save the table as CSV"},
