@@ -13,6 +13,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/compile.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -229,15 +230,13 @@ void RowWriter::row(std::span<const double> values) {
   append(fmt::format("{}\n", fmt::join(values, ",")));
 }
 
-void RowWriter::rows(std::span<const double> values) {
-  if (values.size() % columns_ != 0)
-    throw std::invalid_argument(
-        fmt::format("table {}: {} values for rows of {}", path_.string(), values.size(), columns_));
-  std::string text;
-  for (std::size_t i = 0; i < values.size(); ++i)
-    fmt::format_to(std::back_inserter(text), "{}{}", values[i],
-                   (i + 1) % columns_ == 0 ? '\n' : ',');
-  append(text);
+std::string RowWriter::text_of(std::span<const double> values, std::size_t columns) {
+  fmt::memory_buffer text;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    fmt::format_to(fmt::appender(text), FMT_COMPILE("{}"), values[i]);
+    text.push_back((i + 1) % columns == 0 ? '\n' : ',');
+  }
+  return {text.data(), text.size()};
 }
 
 void RowWriter::append(std::string_view line) {

@@ -66,8 +66,10 @@ class RowWriter {
   /// same double; not-a-number appears as nan. Errors: IoError; std::invalid_argument for the
   /// count.
   void row(std::span<const double> values);
-  /// Several rows one after the other, all of them or none: a multiple of the number of columns.
-  void rows(std::span<const double> values);
+  /// Rows that are text already (text_of), all of them or none.
+  void rows(std::string_view text) { append(text); }
+  /// Rows as row() writes them, for a multiple of `columns` values.
+  static std::string text_of(std::span<const double> values, std::size_t columns);
 
   const std::filesystem::path& path() const { return path_; }
 

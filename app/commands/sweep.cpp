@@ -91,10 +91,12 @@ class SweepFolder {
     folder_.write_file("input.toml", input_);
     return goes_on;
   }
-  bool draw(const report::Figure& figure) const {
+  /// figure: makes it, only if it is wanted.
+  template <class Figure>
+  bool draw(const Figure& figure) const {
     if (options_.no_plot) return false;
     try {
-      figure.render_svg(folder_.file("sweep.svg"));
+      figure().render_svg(folder_.file("sweep.svg"));
       return true;
     } catch (const report::PlotError& error) {
       fmt::print(stderr, "warning: no sweep.svg: {}\n", error.what());
@@ -171,9 +173,9 @@ io::ExitCode run_point_sweep(const std::string& path, const input::InputFile& fi
   if (at.is_kept()) return io::ExitCode::done;
   const io::ExitCode code = sweep.run(at.folder(), options.threads, at.begin());
   at.folder().write_file("sweep.csv", sweep.table());
-  const bool drawn =
-      code == io::ExitCode::done &&
-      at.draw(report::point_sweep_picture(sweep, at.name(), at.folder().file("curves.csv")));
+  const bool drawn = code == io::ExitCode::done && at.draw([&] {
+    return report::point_sweep_picture(sweep, at.name(), at.folder().file("curves.csv"));
+  });
   std::vector<std::pair<std::size_t, std::string>> reasons;
   for (std::size_t k = 0; k < sweep.finished().size(); ++k)
     if (sweep.finished()[k].status != "done")
@@ -211,9 +213,9 @@ io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& fi
   };
   const io::ExitCode code = sweep.run(at.folder(), options.threads, options.seed, at.begin(), tell);
   at.folder().write_file("sweep.csv", sweep.table());
-  const bool drawn =
-      code == io::ExitCode::done && sweep.count("done") > 0 &&
-      at.draw(report::scene_sweep_picture(sweep, at.name(), at.folder().file("runs")));
+  const bool drawn = code == io::ExitCode::done && sweep.count("done") > 0 && at.draw([&] {
+    return report::scene_sweep_picture(sweep, at.name(), at.folder().file("runs"));
+  });
   std::vector<std::pair<std::size_t, std::string>> reasons;
   for (std::size_t k = 0; k < sweep.cases().size(); ++k)
     if (const study::RunSummary& s = sweep.cases()[k].summary;

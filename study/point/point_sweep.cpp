@@ -24,7 +24,7 @@ constexpr std::size_t tests_at_once = 64;  ///< are driven side by side before t
 /// A finished test, and its rows of curves.csv.
 struct Driven {
   PointFigures figures;
-  std::vector<double> rows;
+  std::string rows;
 };
 
 Driven driven(const PointCase& one, std::size_t run, std::span<const point::Quantity> quantities) {
@@ -39,13 +39,16 @@ Driven driven(const PointCase& one, std::size_t run, std::span<const point::Quan
                  Json::object()};
   const std::vector<std::vector<double>> columns = columns_of(*one.test, result, quantities);
   const std::vector<point::Path::Place> places = one.test->test.path.places();
+  std::vector<double> values;
+  values.reserve(rows * (columns.size() + 3));
   for (std::size_t row = 0; row < rows; ++row) {
-    out.rows.push_back(static_cast<double>(run));
-    for (const std::vector<double>& column : columns) out.rows.push_back(column[row] + 0.0);
+    values.push_back(static_cast<double>(run));
+    for (const std::vector<double>& column : columns) values.push_back(column[row] + 0.0);
     const auto [stage, cycle] = places[static_cast<std::size_t>(result.curve.rows[row].leg)];
-    out.rows.push_back(stage);
-    out.rows.push_back(cycle);
+    values.push_back(stage);
+    values.push_back(cycle);
   }
+  out.rows = io::RowWriter::text_of(values, columns.size() + 3);
   if (rows == 0) return out;
   Json& figures = out.figures.figures;
   figures["fraction"] = result.curve.outcome.fraction;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include "study/run/run_record.hpp"
@@ -52,8 +53,10 @@ std::string curve_csv(const input::PointTestFile& file, const TestResult& result
   const std::vector<point::Path::Place> places = file.test.path.places();
   const auto out = std::back_inserter(text);
   for (std::size_t row = 0; row < result.curve.rows.size(); ++row) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      fmt::format_to(out, "{}{}", i == 0 ? "" : ",", columns[i][row] + 0.0);
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (i > 0) text += ',';
+      fmt::format_to(out, FMT_COMPILE("{}"), columns[i][row] + 0.0);
+    }
     const point::Path::Place at = places[static_cast<std::size_t>(result.curve.rows[row].leg)];
     if (stage) fmt::format_to(out, ",{}", at.stage);
     if (cycle) fmt::format_to(out, ",{}", at.cycle);
