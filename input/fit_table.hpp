@@ -12,6 +12,7 @@ namespace repose::input {
 
 /// Rows that are compared, SI units.
 struct FitTable {
+  std::vector<std::string> channels;  ///< of the target's y, those that these rows have
   std::vector<double> x;
   std::vector<std::vector<double>> y;  ///< per channel
   std::vector<int> lines;              ///< of the file
@@ -19,8 +20,10 @@ struct FitTable {
 };
 
 /// Reads the columns x and y off the target's `data` (measured_columns.hpp), keeping rows with
-/// from <= x <= to, after adding x_shift. A row in which x or a channel is blank is left out.
-/// Reports what is wrong and returns no rows then.
-FitTable read_fit_table(TomlReader& target, const TargetTable& given);
+/// from <= x <= to, after adding x_shift. A row without x is left out. Where a channel is blank in
+/// some of the rows and another is not, each channel has a table of its own, with all of its rows,
+/// if `apart` allows it; otherwise a row that lacks one is left out. Reports what is wrong and
+/// returns a table without rows then.
+std::vector<FitTable> read_fit_tables(TomlReader& target, const TargetTable& given, bool apart);
 
 }  // namespace repose::input

@@ -77,21 +77,34 @@ std::vector<calibration::Channel> read_channels(TomlReader& table,
 }  // namespace
 
 void TargetReader::read(TomlReader& table) {
-  Target target;
-  TargetAbout about;
   TargetTable given;
   ReadKeys keys(table);
   target_keys(keys, given);
+  // a start that is free for this experiment alone is one, and so is the experiment
+  bool own_start = false;
+  if (const toml::node* free = table.get("free"); free != nullptr && free->is_table())
+    for (const auto& [key, node] : *free->as_table()) own_start = own_start || node.is_table();
+  const std::vector<FitTable> parts = read_fit_tables(table, given, !own_start);
+  for (const FitTable& data : parts) {
+    if (!data.note.empty()) out_.notes.push_back(data.note);
+    read_part(table, given, data, parts.size() > 1);
+  }
+}
+
+/// A target, or those of its channels that share their rows.
+void TargetReader::read_part(TomlReader& table, const TargetTable& given, const FitTable& data,
+                             bool one_of_several) {
+  Target target;
+  TargetAbout about;
   const std::string& x = given.x;
-  const std::vector<std::string>& y = given.y;
+  const std::vector<std::string>& y = data.channels;
   about.data = given.data;
   about.x_label = x;
   target.name = given.name.empty() ? std::filesystem::path(given.data).stem().string() : given.name;
+  if (one_of_several) target.name += ": " + y.front();
   target.weight = given.weight;
   target.held_out = given.held_out;
   const auto compare = given.compare;
-  const FitTable data = read_fit_table(table, given);
-  if (!data.note.empty()) out_.notes.push_back(data.note);
   const bool scene = !given.scene.empty();
   const auto x_quantity = scene ? std::optional<Quantity>() : quantity(table, "x", x);
   std::vector<Quantity> y_quantities;

@@ -41,6 +41,8 @@ class TargetReader {
   void read_scene_target(TomlReader& table, const TargetTable& given, const FitTable& data,
                          calibration::Target target, TargetAbout about);
   // read_fit_point_target.cpp
+  void read_part(TomlReader& table, const TargetTable& given, const FitTable& data,
+                 bool one_of_several);
   void read_point_target(TomlReader& table, const FitTable& data, Compared compared,
                          calibration::Target target, TargetAbout about);
   void read_initial_freedom(TomlReader& table, calibration::Target& target,

@@ -31,14 +31,15 @@ class MeasuredTables : public testing::Test {
     said_ = file.tables().empty() ? "" : file.tables().front();
     return table;
   }
-  static FitTable read(InputFile& file) {
+  static FitTable read(InputFile& file) { return read(file, false).front(); }
+  static std::vector<FitTable> read(InputFile& file, bool apart) {
     TomlReader target(file);
     TargetTable given;
     ReadKeys keys(target);
     target_keys(keys, given);
-    FitTable table = read_fit_table(target, given);
+    std::vector<FitTable> tables = read_fit_tables(target, given, apart);
     file.throw_if_bad();
-    return table;
+    return tables;
   }
   std::optional<point::Table> history(const std::string& keys) {
     InputFile file = file_with("kind = \"custom\"\nhistory = \"t.csv\"\n" + keys);
@@ -142,6 +143,29 @@ TEST_F(MeasuredTables, blank_cells_drop_their_rows_and_are_counted) {
                 "u_Pa: column 3 \"u_Pa\", unit Pa (header), 3 rows used, 1 dropped (blank or nan)"),
             std::string::npos)
       << said_;
+}
+
+TEST_F(MeasuredTables, a_blank_cell_costs_its_own_channel_alone) {
+  write("eps_a,q_Pa,u_Pa\n0.1,1,1\n0.2,,2\n0.3,3,nan\n0.4,4,4\n,5,5\n");
+  const auto tables = [&](bool apart) {
+    InputFile file = file_with("data = \"t.csv\"\nx = \"eps_a\"\ny = [\"q_Pa\", \"u_Pa\"]\n");
+    return read(file, apart);
+  };
+  const std::vector<FitTable> two = tables(true);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(two[0].channels, (std::vector<std::string>{"q_Pa"}));
+  EXPECT_EQ(two[0].lines, (std::vector<int>{2, 4, 5}));
+  EXPECT_EQ(two[0].y[0], (std::vector<double>{1, 3, 4}));
+  EXPECT_EQ(two[1].channels, (std::vector<std::string>{"u_Pa"}));
+  EXPECT_EQ(two[1].lines, (std::vector<int>{2, 3, 5}));
+  EXPECT_EQ(two[1].x, (std::vector<double>{0.1, 0.2, 0.4}));
+  EXPECT_NE(two[0].note.find("each is compared over its own rows (q_Pa 3, u_Pa 3)"),
+            std::string::npos)
+      << two[0].note;
+  EXPECT_EQ(tables(false).size(), 1u);
+  // blank in the same rows: one table
+  write("eps_a,q_Pa,u_Pa\n0.1,1,1\n0.2,,\n0.3,3,3\n");
+  EXPECT_EQ(tables(true).size(), 1u);
 }
 
 TEST_F(MeasuredTables, what_is_wrong_in_a_fit_is_said) {
