@@ -71,6 +71,26 @@ TYPED_TEST(KernelTest, IsTheBSpline) {
   }
 }
 
+// dw/dξ against the weights themselves: a central difference of a cubic is off by h² w'''/6 (h² at
+// most, as |w'''| <= 3 < 6) and by the rounding of w over h; one slope per node and all of a
+// stencil.
+TYPED_TEST(KernelTest, SlopesAreTheDerivativesOfTheWeights) {
+  constexpr double h = 1e-5;
+  for (const double xi : this->positions()) {
+    const double t = xi - TypeParam::anchor(xi);
+    const auto slopes = TypeParam::slopes(t);
+    const auto up = TypeParam::weights(t + h), down = TypeParam::weights(t - h);
+    const auto all = values(TypeParam::slopes_of_point(t, 0.0).x());
+    double sum = 0.0;
+    for (std::size_t k = 0; k < slopes.size(); ++k) {
+      EXPECT_NEAR(slopes[k], (up[k] - down[k]) / (2.0 * h), h * h + 4.0 * eps / h) << "xi = " << xi;
+      EXPECT_NEAR(all[k], slopes[k], 8.0 * eps) << "xi = " << xi;
+      sum += slopes[k];
+    }
+    EXPECT_NEAR(sum, 0.0, 8.0 * eps) << "xi = " << xi;
+  }
+}
+
 TYPED_TEST(KernelTest, MomentsOfOrderZeroToTwo) {
   for (const double xi : this->positions()) {
     const auto [base, w, d] = stencil_at<TypeParam>(xi);
