@@ -158,6 +158,15 @@ std::string good_lengths(double x, double unit) {
 }
 
 void check_cells(const Scene& scene) {
+  // first of all: what follows counts cells in integers
+  double cells = 1.0;
+  for (std::size_t k = 0; k < scene.dimensions(); ++k) cells *= scene.domain[k] / scene.h;
+  if (cells > max_cells)
+    throw InputError(
+        "grid.h",
+        "the box has " + number(cells, 3) + " cells, more than memory is likely to hold (" +
+            number(max_cells) + "); h >= " +
+            number(scene.h * per_axis(scene, cells / max_cells) * 1.0005, 3) + " m would do");
   if (!is_whole_multiple(scene.domain[0], scene.h)) {
     std::string near = nearby_h(scene, true);
     if (near.empty()) near = nearby_h(scene, false);
@@ -185,14 +194,6 @@ void check_cells(const Scene& scene) {
                                    " cells across; the walls need at least " + number(min_cells) +
                                    " between them: h <= " + number(least * scene.h / min_cells) +
                                    " m");
-  double cells = 1.0;
-  for (auto length = scene.domain.begin(); length != end; ++length) cells *= *length / scene.h;
-  if (cells > max_cells)
-    throw InputError(
-        "grid.h",
-        "the box has " + number(cells, 3) + " cells, more than memory is likely to hold (" +
-            number(max_cells) + "); h >= " +
-            number(scene.h * per_axis(scene, cells / max_cells) * 1.0005, 3) + " m would do");
 }
 
 void check_geometry(const Scene& scene) {

@@ -1,5 +1,6 @@
 /// The bound of step_size.hpp on the frequencies of the grid, against their exact values.
 
+#include <map>
 #include <random>
 
 #include <Eigen/Eigenvalues>
@@ -112,6 +113,53 @@ TEST(NodeShare, FollowsTheScene) {
   const double of_points = 0.4 * 0.0125 / fastest;
   EXPECT_GT(simulation.next_dt(), 1.2 * of_points);  // 1.9 at the paper's h
   EXPECT_LT(simulation.next_dt(), 4.0 * of_points);
+}
+
+// The share itself, from the points as they lie: the largest c_i² = Σ w c_p²/Σ w of any node (the
+// masses are alike) over the largest c_p². A step earlier the toe's pressures differ by some per
+// cent.
+TEST(NodeShare, IsTheRootOfTheLargestNodeOverTheLargestPoint) {
+  Scene scene = column_collapse(cam_clay(), 0.0125);
+  scene.courant = 0.4;
+  Simulation simulation(scene);
+  run_until(simulation, 0.25);
+  const Simulation::Snapshot shot = simulation.snapshot();
+  const double stiff = (1.0 + 4.0 / 3.0 * 3.0 * (1.0 - 0.6) / (2.0 * 1.3)) / 0.0010;
+  std::map<std::pair<int, int>, std::pair<double, double>> nodes;
+  double fastest = 0.0, most = 0.0;
+  for (std::size_t k = 0; k < shot.x_m.size(); ++k) {
+    const double c2 = stiff * std::max(0.0, shot.pressure_Pa[k]) / shot.density[k];
+    fastest = std::max(fastest, c2);
+    const double x = shot.x_m[k] / scene.h, y = shot.y_m[k] / scene.h;
+    const double ax = CubicKernel::anchor(x), ay = CubicKernel::anchor(y);
+    const auto wx = CubicKernel::weights(x - ax), wy = CubicKernel::weights(y - ay);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        const double w = wx[static_cast<std::size_t>(i)] * wy[static_cast<std::size_t>(j)];
+        // what is behind the floor or the left wall is mirrored
+        const int ix = std::abs(static_cast<int>(ax) - 1 + i);
+        const int iy = std::abs(static_cast<int>(ay) - 1 + j);
+        auto& node = nodes[{ix, iy}];
+        node.first += w * c2;
+        node.second += w;
+      }
+  }
+  for (const auto& [place, node] : nodes)
+    if (node.second > 0.0) most = std::max(most, node.first / node.second);
+  const double expected = 0.4 * scene.h / std::sqrt(most);
+  EXPECT_LT(most, 0.7 * fastest);  // so that a root makes a difference
+  EXPECT_NEAR(simulation.next_dt(), expected, 0.1 * expected);
+}
+
+// Diffusion by the grid's own Laplacian is stable up to Δt = ρh²/4η in the plane; 0.9 of it is
+// taken.
+TEST(StepSize, OfAViscousFluidIsNineTenthsOfTheLimitOfDiffusion) {
+  const double eta = 500.0, rho = 1300.0;
+  Scene scene = column_collapse(newtonian(eta, 26e3, 7.0, rho), 0.0125);
+  Simulation simulation(scene);
+  simulation.step(1.0);
+  EXPECT_NEAR(simulation.next_dt(), 0.9 * rho * scene.h * scene.h / (4.0 * eta),
+              0.01 * simulation.next_dt());
 }
 
 }  // namespace

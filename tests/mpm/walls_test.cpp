@@ -103,6 +103,26 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
   }
 };
 
+// What a wall mirrors: the image of a is on c and that of b on b, so that the node on the wall
+// holds its mass twice, and the two beside it their sum. The mass that the points put there stays.
+TEST_P(WallsTest, TheMirroredMassIsThatOfBothSides) {
+  for (const Wall& wall : {slip, no_slip}) {
+    fill([](double, double) { return reference::Vector{0.3, -0.2}; });
+    const auto node = [&](int ix, int iy) { return grid_.node(ix, iy); };
+    const auto mass = [&](int ix, int iy) { return node(ix, iy).block->mass[node(ix, iy).place]; };
+    const auto mirrored = [&](int ix, int iy) {
+      return node(ix, iy).block->mirrored_mass[node(ix, iy).place];
+    };
+    const double a = mass(5, -1), b = mass(5, 0), c = mass(5, 1), inside = mass(5, 3);
+    apply_walls(grid_, {open, open, wall, open});
+    EXPECT_EQ(mass(5, 0), b);
+    EXPECT_DOUBLE_EQ(mirrored(5, 0), 2.0 * b);
+    EXPECT_DOUBLE_EQ(mirrored(5, 1), a + c);
+    EXPECT_DOUBLE_EQ(mirrored(5, -1), a + c);
+    EXPECT_EQ(mirrored(5, 3), inside);
+  }
+}
+
 // A node's velocity is a quotient of sums of up to 60 terms; over w > 1e-7, the lightest node of
 // this lattice, that is 1e-16/1e-7. Where it is interpolated it weighs little again: 1e-13 |v|.
 constexpr double exact = 1e-12;
