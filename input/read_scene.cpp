@@ -290,6 +290,12 @@ void output_keys(Keys& keys, SceneFile& file) {
   keys.number({"series_interval", "s", "time between rows of series.csv, 0 for two rows only",
                not_negative},
               file.scene.series_interval);
+  keys.number(
+      {"checkpoint_interval", "s",
+       "wall-clock time between checkpoints, from which a run that was killed is resumed; 0 "
+       "for none",
+       not_negative},
+      file.checkpoint_interval);
   keys.choice({"colour", "-", "of final.svg"}, picture_field_names, file.colour);
 }
 

@@ -15,7 +15,8 @@ constexpr std::array<std::string_view, 2> picture_field_names{"mises", "density"
 struct SceneFile {
   mpm::Scene scene;
   PictureField colour = PictureField::mises;
-  std::vector<std::string> notes;  ///< what was made of the input that the user may not expect
+  double checkpoint_interval = 60.0;  ///< wall-clock time between checkpoints, 0 for none [s]
+  std::vector<std::string> notes;     ///< what was made of the input that the user may not expect
 };
 
 /// Every key of a scene file but [chart] (read_chart.hpp).

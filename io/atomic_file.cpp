@@ -1,8 +1,12 @@
 #include "io/atomic_file.hpp"
 
+#include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -75,16 +79,69 @@ IoError::IoError(std::filesystem::path path, std::string_view doing, int error_n
     : IoError(std::move(path),
               std::string(doing) + ": " + std::generic_category().message(error_number)) {}
 
-std::filesystem::path temporary_name(const std::filesystem::path& path) {
-  return path.parent_path() / ("." + path.filename().string() + ".repose-part");
+namespace {
+
+constexpr std::string_view part_ending = ".repose-part";
+
+/// ".series.csv.1234-5.repose-part" → "series.csv" and 1234; 0 where no number stands.
+struct Part {
+  std::string name;
+  long process = 0;
+};
+std::optional<Part> part_of(std::string_view file) {
+  if (!file.starts_with('.') || !file.ends_with(part_ending)) return std::nullopt;
+  file = file.substr(1, file.size() - 1 - part_ending.size());
+  Part part{std::string(file)};
+  const std::size_t dot = file.rfind('.');
+  if (dot == std::string_view::npos) return part;
+  long process = 0;
+  const char* const end = file.data() + file.size();
+  const auto [dash, error] = std::from_chars(file.data() + dot + 1, end, process);
+  if (error == std::errc() && dash != end && *dash == '-' && process > 0)
+    part = {std::string(file.substr(0, dot)), process};
+  return part;
+}
+
+/// A new file beside `path` under a name that nobody else has.
+int open_part(const std::filesystem::path& path, std::filesystem::path& part) {
+  static std::atomic<unsigned> count{0};
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    part = path.parent_path() / ("." + path.filename().string() + "." + std::to_string(::getpid()) +
+                                 "-" + std::to_string(count++) + std::string(part_ending));
+    // O_EXCL: what is planted under the name, a link say, must not lead the write elsewhere
+    const int fd = ::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST) return fd;
+  }
+  return -1;
+}
+
+}  // namespace
+
+std::optional<std::string> name_of_part(std::string_view file_name) {
+  if (auto part = part_of(file_name)) return std::move(part->name);
+  return std::nullopt;
+}
+
+void remove_old_parts(const std::filesystem::path& folder,
+                      const std::function<bool(std::string_view)>& ours) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<fs::path> old;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const auto part = part_of(it->path().filename().string());
+    if (!part || !ours(part->name)) continue;
+    const bool alive =
+        part->process > 0 && (::kill(static_cast<pid_t>(part->process), 0) == 0 || errno != ESRCH);
+    if (!alive) old.push_back(it->path());
+  }
+  for (const fs::path& one : old) fs::remove(one, error);
 }
 
 void write_atomically(const std::filesystem::path& path, std::string_view content,
                       Outlives outlives) {
   refuse_special_file(path);
-  const std::filesystem::path part = temporary_name(path);
-  // O_NOFOLLOW: a link planted under the temporary name must not lead the write elsewhere.
-  Descriptor fd(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666));
+  std::filesystem::path part;
+  Descriptor fd(open_part(path, part));
   if (fd.get() < 0) throw IoError(path, "cannot create the file", errno);
 
   int error = write_fully(fd.get(), content);

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -28,16 +30,23 @@ class IoError : public std::runtime_error {
 /// what can be made again in less.
 enum class Outlives : std::uint8_t { power_cut, kill };
 
-/// Writes a file that is whole or not there: the content goes to a hidden temporary name in the
-/// same folder, to the disk (fsync) if it is to outlive a power cut, and is then renamed over
-/// `path`. An older file of that name stays untouched until the rename and survives any failure;
-/// the temporary never stays behind unless the process is killed (temporary_name() says which file
-/// that would be). A link of that name is replaced, not followed. content: bytes, of any length.
-/// Errors: IoError; a folder, device or pipe of that name is one.
+/// Writes a file that is whole or not there: the content goes to a hidden temporary name of its own
+/// in the same folder, to the disk (fsync) if it is to outlive a power cut, and is then renamed
+/// over `path`; of several writers at once, in threads or processes, one wins. An older file of
+/// that name stays untouched until the rename and survives any failure; the temporary stays behind
+/// only where the process is killed (remove_old_parts()). A link of that name is replaced, not
+/// followed. content: bytes, of any length. Errors: IoError; a folder, device or pipe of that name
+/// is one.
 void write_atomically(const std::filesystem::path& path, std::string_view content,
                       Outlives outlives = Outlives::power_cut);
 
-/// The name under which write_atomically(path) writes: ".NAME.repose-part" beside path.
-std::filesystem::path temporary_name(const std::filesystem::path& path);
+/// Removes what killed processes have left in a folder (".NAME.PID-N.repose-part", or of older
+/// versions without PID) of the files that `ours` knows by name; where a process of that number
+/// lives, it stays. Errors are ignored: a leftover harms nobody.
+void remove_old_parts(const std::filesystem::path& folder,
+                      const std::function<bool(std::string_view)>& ours);
+
+/// Is this the name of a temporary of write_atomically()? Then that of the file it was for.
+std::optional<std::string> name_of_part(std::string_view file_name);
 
 }  // namespace repose::io

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -15,6 +16,8 @@
 #include <fcntl.h>
 #include <fmt/compile.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace repose::io {
@@ -24,7 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 60> outputs{"summary.json",
+constexpr std::array<std::string_view, 61> outputs{"summary.json",
+                                                   "checkpoint_previous.h5",
                                                    "sweep.csv",
                                                    "sweep.svg",
                                                    "curves.csv",
@@ -87,9 +91,7 @@ constexpr std::array<std::string_view, 60> outputs{"summary.json",
 
 /// NAME_00012.hdf or NAME.hdf.series, or a temporary of one of them.
 bool is_frame_file(std::string name) {
-  constexpr std::string_view part = ".repose-part";
-  if (name.starts_with('.') && name.ends_with(part))
-    name = name.substr(1, name.size() - 1 - part.size());
+  if (auto whole = name_of_part(name)) name = std::move(*whole);
   if (name.ends_with(".hdf.series")) return true;
   constexpr std::string_view suffix = ".hdf";
   if (!name.ends_with(suffix)) return false;
@@ -164,12 +166,53 @@ fs::path ResultFolder::default_path(std::string_view name) { return fs::path("re
 std::span<const std::string_view> ResultFolder::output_names() { return outputs; }
 
 void ResultFolder::remove_old_outputs() const {
-  for (const std::string_view name : outputs) {
-    remove_file(file(name));
-    remove_file(temporary_name(file(name)));
-  }
-  remove_file(temporary_name(file("input.toml")));
+  for (const std::string_view name : outputs) remove_file(file(name));
+  remove_old_parts();
   remove_frames(frames());
+}
+
+void ResultFolder::remove_old_parts() const {
+  io::remove_old_parts(folder_, [](std::string_view name) {
+    return name == "input.toml" || std::find(outputs.begin(), outputs.end(), name) != outputs.end();
+  });
+  io::remove_old_parts(frames(),
+                       [](std::string_view name) { return is_frame_file(std::string(name)); });
+}
+
+FolderClaim::FolderClaim(const ResultFolder& folder) : path_(folder.file(".repose-lock")) {
+  for (;;) {
+    fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (fd_ < 0) throw IoError(folder.path(), "cannot write into it", errno);
+    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
+      char process[32] = {};
+      const ssize_t n = ::read(fd_, process, sizeof process - 1);
+      ::close(std::exchange(fd_, -1));
+      if (error == EWOULDBLOCK)
+        throw IoError(
+            folder.path(),
+            fmt::format("{} is writing into it; wait for its end, or give another folder with -o",
+                        n > 0 ? fmt::format("process {}", std::atol(process)) : "another process"));
+      return;  // a file system without locks
+    }
+    // whoever had it may have removed the file since it was opened
+    struct stat here {
+    }, there{};
+    if (::fstat(fd_, &here) == 0 && ::stat(path_.c_str(), &there) == 0 &&
+        here.st_ino == there.st_ino)
+      break;
+    ::close(std::exchange(fd_, -1));
+  }
+  const std::string process = fmt::format("{}\n", ::getpid());
+  if (::ftruncate(fd_, 0) != 0 || ::write(fd_, process.data(), process.size()) < 0) {
+    // only its number is missing in the other's message
+  }
+}
+
+FolderClaim::~FolderClaim() {
+  if (fd_ < 0) return;
+  ::unlink(path_.c_str());
+  ::close(fd_);
 }
 
 void ResultFolder::write_file(std::string_view name, std::string_view content,

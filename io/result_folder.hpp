@@ -24,12 +24,17 @@ class ResultFolder {
   std::filesystem::path file(std::string_view name) const { return folder_ / name; }
   std::filesystem::path frames() const { return folder_ / "frames"; }
   std::filesystem::path checkpoint() const { return folder_ / "checkpoint.h5"; }
+  /// The one before it, in case that one is damaged.
+  std::filesystem::path previous_checkpoint() const { return folder_ / "checkpoint_previous.h5"; }
 
   /// Clears what an older result left, so that it cannot be taken for part of a new one: the files
   /// of output_names(), frames (NAME_00012.hdf, NAME.hdf.series in frames/) and temporaries of
   /// killed runs. input.toml stays, since writing the new one replaces it. Anything else in the
   /// folder is somebody else's and is not touched. Not for a run that resumes. Errors: IoError.
   void remove_old_outputs() const;
+
+  /// Removes only what killed processes left of files that were being written.
+  void remove_old_parts() const;
 
   /// The names that repose may write into a result folder, input.toml and frames/ aside.
   static std::span<const std::string_view> output_names();
@@ -40,6 +45,22 @@ class ResultFolder {
 
  private:
   std::filesystem::path folder_;
+};
+
+/// While one lives, this process alone writes into the folder, and another that tries is refused
+/// with this one's number. It ends with the process, however that ends. (A lock on the hidden file
+/// .repose-lock; where the file system has no locks, nothing is refused.)
+class FolderClaim {
+ public:
+  /// Errors: IoError if another process, or another claim of this one, has it.
+  explicit FolderClaim(const ResultFolder& folder);
+  ~FolderClaim();
+  FolderClaim(const FolderClaim&) = delete;
+  FolderClaim& operator=(const FolderClaim&) = delete;
+
+ private:
+  std::filesystem::path path_;
+  int fd_ = -1;
 };
 
 /// A CSV table that grows row by row while a run goes on. Each row reaches the file as soon as it

@@ -73,6 +73,7 @@ class SweepFolder {
         name_(std::filesystem::path(file.name()).stem().string()),
         folder_(options.output.empty() ? io::ResultFolder::default_path(name_)
                                        : std::filesystem::path(options.output)),
+        claim_(folder_),
         input_(text_of(file, origin_line(path, options))) {}
 
   const io::ResultFolder& folder() const { return folder_; }
@@ -155,6 +156,7 @@ class SweepFolder {
   study::Usage before_;
   std::string name_;
   io::ResultFolder folder_;
+  io::FolderClaim claim_;
   std::string input_;
 };
 

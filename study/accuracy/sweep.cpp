@@ -287,8 +287,7 @@ io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool 
   const std::string text = text_of(request.folder / "input.toml");
   const bool same = !text.empty() && after_version(text) == after_version(request.input);
   if (!same || (there != "done" && there != "failed")) {
-    request.resume =
-        resume && same && there == "interrupted" && fs::exists(request.folder / "checkpoint.h5");
+    request.resume = resume && same && (there == "interrupted" || there == "running");
     const io::ExitCode code = run_scene(request);
     if (code == io::ExitCode::interrupted) return code;
   }

@@ -66,7 +66,8 @@ class Run {
         simulation_(scene_, request.threads),
         record_(simulation_),
         schedule_(scene_.end_time, scene_.series_interval, scene_.frame_interval),
-        folder_(request.folder) {}
+        folder_(request.folder),
+        claim_(folder_) {}
 
   io::ExitCode go();
 
@@ -82,6 +83,9 @@ class Run {
   void write_frame();
   void write_profile() const;
   bool write_picture();
+  void write_checkpoint();
+  void write_checkpoint_if_due();
+  void load_checkpoint();
   void write_summary(const std::string& status, const std::string& reason);
   void tell_warnings();
   bool finite_state(std::string& reason) const;
@@ -94,8 +98,10 @@ class Run {
   RunRecord record_;
   OutputSchedule schedule_;
   io::ResultFolder folder_;
+  io::FolderClaim claim_;
   std::optional<io::RowWriter> series_;
   std::optional<io::FrameWriter> frames_;
+  double next_checkpoint_ = 0.0;           ///< by the clock of usage() [s]
   std::set<std::string> told_;             ///< warnings already printed, without_figures()
   std::vector<std::string> own_warnings_;  ///< beside the simulation's
 };
@@ -113,7 +119,7 @@ io::ExitCode Run::go() {
 }
 
 void Run::start() {
-  if (noted_status(folder_.file("summary.json")) == "interrupted")
+  if (fs::exists(folder_.checkpoint()))
     voice_.warn(fmt::format("{} held an interrupted run, which begins anew; --resume continues one",
                             folder_.path().string()));
   folder_.remove_old_outputs();
@@ -130,9 +136,10 @@ void Run::start() {
 }
 
 void Run::resume() {
+  folder_.remove_old_parts();
   require_same_input(request_, folder_.file("input.toml"));
   record_.continue_from(folder_.file("summary.json"));
-  simulation_.load(folder_.checkpoint());
+  load_checkpoint();
   const double time = simulation_.time();
   series_.emplace(io::RowWriter::continued(folder_.file("series.csv"),
                                            series_columns(scene_.dimensions()), time));
@@ -145,6 +152,43 @@ void Run::resume() {
                 {"folder", folder_.path().string()}});
   voice_.say(fmt::format("{}: resumed at t = {:.6g} s, step {}\n", scene_.name, time,
                          simulation_.steps()));
+}
+
+/// The state as it is, beside the one before it. The summary comes first: what it says of rows that
+/// a run resumed from the older state writes again is the same.
+void Run::write_checkpoint() {
+  if (fs::exists(folder_.checkpoint())) {
+    std::error_code ignored;  // a file system without links keeps one checkpoint
+    fs::remove(folder_.previous_checkpoint(), ignored);
+    fs::create_hard_link(folder_.checkpoint(), folder_.previous_checkpoint(), ignored);
+  }
+  simulation_.save(folder_.checkpoint());
+}
+
+/// Once in checkpoint_interval, and never more than a fiftieth of the time.
+void Run::write_checkpoint_if_due() {
+  const double interval = request_.file.checkpoint_interval, begun = usage().wall_s;
+  if (!(interval > 0.0) || begun < next_checkpoint_) return;
+  if (next_checkpoint_ > 0.0) {
+    write_summary("running", "");
+    write_checkpoint();
+  }
+  const double end = usage().wall_s;
+  next_checkpoint_ = end + std::max(interval, 50.0 * (end - begun));
+}
+
+/// The last checkpoint, or, if that is damaged, the one before it: the run comes to the same bits.
+void Run::load_checkpoint() {
+  if (fs::exists(folder_.checkpoint())) {
+    try {
+      simulation_.load(folder_.checkpoint());
+      return;
+    } catch (const io::IoError& error) {
+      if (!fs::exists(folder_.previous_checkpoint())) throw;
+      voice_.warn(fmt::format("{}; going on from the one before it", error.what()));
+    }
+  }
+  simulation_.load(folder_.previous_checkpoint());
 }
 
 io::ExitCode Run::advance() {
@@ -167,6 +211,7 @@ io::ExitCode Run::advance() {
         progress.clear();
         tell_warnings();
       }
+      write_checkpoint_if_due();
       const bool end = simulation_.time() >= scene_.end_time;
       progress.update(simulation_.time(), simulation_.steps(), simulation_.point_steps(), end);
       if (interrupt.requested() && !end) {
@@ -264,7 +309,8 @@ io::ExitCode Run::finish() {
   const bool drawn = write_picture();
   write_summary("done", "");
   std::error_code ignored;
-  fs::remove(folder_.checkpoint(), ignored);  // of an interruption that is made good
+  fs::remove(folder_.checkpoint(), ignored);  // of what is made good
+  fs::remove(folder_.previous_checkpoint(), ignored);
 
   const double wall = record_.wall_s + usage().wall_s - begun_.wall_s;
   voice_.event(
@@ -283,8 +329,8 @@ io::ExitCode Run::finish() {
 }
 
 io::ExitCode Run::stop_at_interrupt() {
-  simulation_.save(folder_.checkpoint());
   write_summary("interrupted", "");
+  write_checkpoint();
   voice_.event({{"event", "end"},
                 {"status", "interrupted"},
                 {"exit", static_cast<int>(io::ExitCode::interrupted)},
@@ -316,24 +362,29 @@ io::ExitCode Run::stop_at_failure(const std::string& reason) {
 }  // namespace
 
 io::ExitCode run_scene(const RunRequest& request) {
-  if (request.resume) {
-    if (!fs::is_directory(request.folder))
-      throw io::IoError(request.folder,
+  RunRequest asked = request;
+  if (asked.resume) {
+    if (!fs::is_directory(asked.folder))
+      throw io::IoError(asked.folder,
                         "there is no such result to resume; without --resume it is begun");
-    const fs::path checkpoint = io::ResultFolder(request.folder).checkpoint();
-    if (!fs::exists(checkpoint)) {
-      if (noted_status(request.folder / "summary.json") != "done")
-        throw io::IoError(
-            checkpoint,
-            "there is no checkpoint to resume from; without --resume the run begins anew");
-      require_same_input(request, request.folder / "input.toml");
-      const Voice voice(request);
-      voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});
-      voice.say(fmt::format("{} is complete: nothing to resume\n", request.folder.string()));
-      return io::ExitCode::done;
+    const io::ResultFolder folder(asked.folder);
+    if (!fs::exists(folder.checkpoint()) && !fs::exists(folder.previous_checkpoint())) {
+      if (!fs::exists(folder.file("input.toml")))
+        throw io::IoError(folder.checkpoint(),
+                          "there is no checkpoint to resume from; without --resume the run begins");
+      require_same_input(asked, folder.file("input.toml"));
+      const Voice voice(asked);
+      if (noted_status(folder.file("summary.json")) == "done") {
+        voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});
+        voice.say(fmt::format("{} is complete: nothing to resume\n", asked.folder.string()));
+        return io::ExitCode::done;
+      }
+      voice.say(fmt::format("{}: there is no checkpoint yet, so the run begins anew\n",
+                            asked.folder.string()));
+      asked.resume = false;
     }
   }
-  Run run(request);
+  Run run(asked);
   return run.go();
 }
 

@@ -32,8 +32,7 @@ io::ExitCode SceneSweep::run(const io::ResultFolder& folder, int threads, std::u
       request.quiet = true;
       const io::ResultFolder there(request.folder);
       if (!resume || !is_finished(there, one.input)) {
-        request.resume = resume && std::filesystem::exists(there.checkpoint()) &&
-                         text_of(there.file("input.toml")) == one.input;
+        request.resume = resume && text_of(there.file("input.toml")) == one.input;
         if (run_scene(request) == io::ExitCode::interrupted) return io::ExitCode::interrupted;
       }
       one.summary = read_summary(there.file("summary.json"));

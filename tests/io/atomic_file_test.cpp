@@ -1,12 +1,16 @@
 #include "io/atomic_file.hpp"
 
+#include <array>
+#include <atomic>
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/scratch_folder.hpp"
@@ -76,20 +80,76 @@ TEST_F(AtomicFileTest, AWriteCutShortKeepsTheOlderFile) {
   EXPECT_EQ(entries(), 1u);  // no temporary left
 }
 
-TEST_F(AtomicFileTest, AnOldTemporaryIsNoObstacle) {
+TEST_F(AtomicFileTest, OldTemporariesAreNoObstacleAndAreRemovedWhereTheirProcessIsGone) {
   const fs::path path = folder_ / "a.txt";
-  std::ofstream(temporary_name(path)) << std::string(100, 'y');  // of a process that was killed
+  const pid_t gone = [] {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(0);
+    ::waitpid(child, nullptr, 0);
+    return child;
+  }();
+  const fs::path of_the_gone = folder_ / (".a.txt." + std::to_string(gone) + "-0.repose-part");
+  const fs::path of_the_living =
+      folder_ / (".a.txt." + std::to_string(::getpid()) + "-999.repose-part");
+  const fs::path of_an_older_version = folder_ / ".a.txt.repose-part";
+  const fs::path of_another_file = folder_ / (".b.txt." + std::to_string(gone) + "-0.repose-part");
+  for (const fs::path& part : {of_the_gone, of_the_living, of_an_older_version, of_another_file})
+    std::ofstream(part) << std::string(100, 'y');
   write_atomically(path, "new");
   EXPECT_EQ(content_of(path), "new");
-  EXPECT_EQ(entries(), 1u);
+  remove_old_parts(folder_, [](std::string_view name) { return name == "a.txt"; });
+  EXPECT_FALSE(fs::exists(of_the_gone));
+  EXPECT_FALSE(fs::exists(of_an_older_version));
+  EXPECT_TRUE(fs::exists(of_the_living));
+  EXPECT_TRUE(fs::exists(of_another_file));
+  EXPECT_EQ(name_of_part(of_the_gone.filename().string()), "a.txt");
+  EXPECT_EQ(name_of_part(".a.b-c.repose-part"), "a.b-c");
+  EXPECT_FALSE(name_of_part("a.txt"));
 }
 
-TEST_F(AtomicFileTest, DoesNotFollowALinkPlantedUnderTheTemporaryName) {
+// 400 writes by four threads and 100 each by two processes, to one name: none fails, and what is
+// there is always one of them, whole.
+TEST_F(AtomicFileTest, ManyWritersAtOnce) {
   const fs::path path = folder_ / "a.txt";
-  std::ofstream(folder_ / "foreign") << "foreign";
-  fs::create_symlink(folder_ / "foreign", temporary_name(path));
-  EXPECT_THROW(write_atomically(path, "new"), IoError);
-  EXPECT_EQ(content_of(folder_ / "foreign"), "foreign");
+  const auto text = [](int writer) { return std::string(20'000, static_cast<char>('a' + writer)); };
+  write_atomically(path, text(0));
+  const auto write = [&](int writer) {
+    for (int k = 0; k < 100; ++k) write_atomically(path, text(writer), Outlives::kill);
+  };
+  std::array<pid_t, 2> children{};
+  for (std::size_t c = 0; c < children.size(); ++c) {
+    children[c] = ::fork();
+    if (children[c] != 0) continue;
+    try {
+      write(10 + static_cast<int>(c));
+    } catch (...) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  std::atomic<int> failures{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&, t] {
+      try {
+        write(t);
+      } catch (const IoError&) {
+        ++failures;
+      }
+    });
+  for (int k = 0; k < 200; ++k) {
+    const std::string seen = content_of(path);
+    ASSERT_EQ(seen.size(), 20'000u);
+    ASSERT_EQ(seen.find_first_not_of(seen.front()), std::string::npos);
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const pid_t child : children) {
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  }
+  EXPECT_EQ(failures, 0);
+  EXPECT_EQ(entries(), 1u);
 }
 
 TEST_F(AtomicFileTest, RefusesWhatIsNotAFile) {

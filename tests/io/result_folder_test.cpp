@@ -61,6 +61,29 @@ TEST_F(ResultFolderTest, RefusesAFileInItsPlace) {
   EXPECT_EQ(content_of(base_ / "file"), "file");
 }
 
+TEST_F(ResultFolderTest, IsWrittenIntoByOneProcessAlone) {
+  const ResultFolder folder(base_ / "run");
+  {
+    const FolderClaim first(folder);
+    try {
+      const FolderClaim second(folder);
+      FAIL() << "claimed twice";
+    } catch (const IoError& error) {
+      EXPECT_EQ(error.path(), folder.path());
+      EXPECT_EQ(error.reason(), "process " + std::to_string(::getpid()) +
+                                    " is writing into it; wait for its end, or give another "
+                                    "folder with -o");
+    }
+  }
+  EXPECT_FALSE(fs::exists(folder.file(".repose-lock")));
+  const FolderClaim again(folder);
+  // what a kill leaves holds nobody up
+  std::ofstream(base_ / "left") << "";
+  const ResultFolder other(base_ / "other");
+  std::ofstream(other.file(".repose-lock")) << "12345\n";
+  const FolderClaim of_other(other);
+}
+
 TEST_F(ResultFolderTest, ClearsItsOwnOlderOutputsOnly) {
   const ResultFolder folder(base_ / "run");
   fs::create_directory(folder.frames());
