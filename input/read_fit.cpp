@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "input/program_identity.hpp"
 #include "input/read_fit_parameters.hpp"
 #include "input/read_fit_solver.hpp"
 #include "input/read_fit_target.hpp"
@@ -133,7 +134,8 @@ FitFile read_fit(const std::filesystem::path& file, std::span<const std::string>
   std::ostringstream text;
   text << resolved << "\n";
   out.resolved = std::move(text).str();
-  std::string key = out.resolved + out.fingerprint + fmt::format("seed {}", out.options.seed);
+  std::string key = out.resolved + out.fingerprint +
+                    fmt::format("seed {} {}", out.options.seed, program_identity());
   for (const calibration::Target& t : out.targets)
     for (const auto& channel : t.channels)
       for (Eigen::Index i = 0; i < t.rows(); ++i)

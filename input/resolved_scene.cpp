@@ -5,9 +5,9 @@
 
 #include <fmt/core.h>
 
+#include "input/program_identity.hpp"
 #include "input/read_law.hpp"
 #include "input/write_keys.hpp"
-#include "repose_version.hpp"
 
 namespace repose::input {
 namespace {
@@ -38,7 +38,7 @@ std::string resolved_input(const SceneFile& file, const std::string& origin) {
   SceneFile copy = file;
   return fmt::format(
              "# The input of this result with every default written out, by repose {}.\n# {}\n",
-             version_string, origin) +
+             program_identity(), origin) +
          write_keys([&](Keys& keys) { scene_keys(keys, copy); });
 }
 

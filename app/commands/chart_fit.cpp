@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "app/commands/chart.hpp"
+#include "input/program_identity.hpp"
 #include "input/read_chart.hpp"
 #include "input/read_fit.hpp"
 #include "io/interrupt.hpp"
@@ -60,8 +61,8 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
       twin ? study::twin_task()
            : study::task_of(input::read_fit(file, options.sets, seed, folder.path() / "runs"));
   const std::string input =
-      fmt::format("# The input of this result, by repose {}.\n{}{}", version_string, task.input,
-                  input::chart_text(settings.max_evaluations, settings.seed));
+      fmt::format("# The input of this result, by repose {}.\n{}{}", input::program_identity(),
+                  task.input, input::chart_text(settings.max_evaluations, settings.seed));
   if (options.resume && study::is_finished(folder, input)) return {io::ExitCode::done, true};
   folder.remove_old_outputs();
   folder.write_file("input.toml", input);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "input/program_identity.hpp"
 #include "input/read_point_test.hpp"
 #include "input/read_scene.hpp"
 #include "input/resolved_scene.hpp"
@@ -59,7 +60,8 @@ std::string text_of(const input::InputFile& file, const std::string& origin) {
                                            .lexically_normal()
                                            .string());
   std::ostringstream text;
-  text << "# The input of this sweep, by repose " << version_string << ".\n# " << origin << "\n"
+  text << "# The input of this sweep, by repose " << input::program_identity() << ".\n# " << origin
+       << "\n"
        << table << "\n";
   return std::move(text).str();
 }

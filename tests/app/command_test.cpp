@@ -183,11 +183,12 @@ TEST_F(CommandTest, BadInputIsToldWithItsPlaceAndLeavesNothing) {
   std::ofstream(base_ / "wrong.toml") << tiny << "colour = \"red\"\nfoo = 1\n";
   const Outcome wrong = run({"run", "wrong.toml", "--json"});
   EXPECT_EQ(wrong.exit, 2);
-  EXPECT_EQ(wrong.err,
-            "wrong.toml:15:1: output.colour must be one of \"mises\", \"density\"; got the string "
-            "\"red\"\n"
-            "wrong.toml:16:1: unknown key 'foo' in [output]; [output] takes colour, "
-            "frame_interval, series_interval\n");
+  EXPECT_EQ(
+      wrong.err,
+      "wrong.toml:15:1: output.colour must be one of \"mises\", \"density\"; got the string "
+      "\"red\"\n"
+      "wrong.toml:16:1: unknown key 'foo' in [output]; [output] takes checkpoint_interval, colour, "
+      "frame_interval, series_interval\n");
   const Json event = Json::parse(wrong.out);
   EXPECT_EQ(event.at("event"), "error");
   EXPECT_EQ(event.at("exit"), 2);

@@ -44,13 +44,13 @@ class SolverDigest : public ::testing::Test {
     std::ofstream(source_ / file) << text;
   }
   /// As the build would note it.
-  std::string digest(const std::string& compiled = "g++ 12 -O3") {
+  std::string digest(const std::string& compiled = "g++ 12 -O3", const std::string& of = "solver") {
     const std::string line = std::string("'" REPOSE_CMAKE "' -DSOURCE_DIR='") + source_.string() +
                              "' -DVERSION=0.2.0 -DCOMPILED='" + compiled + "' -DOUTPUT='" +
                              output_.string() +
                              "' -P '" REPOSE_SOURCE_DIR "/cmake/WriteVersion.cmake'";
     EXPECT_EQ(std::system(line.c_str()), 0) << line;
-    const std::string text = repose::content_of(output_), mark = "solver_digest = \"";
+    const std::string text = repose::content_of(output_), mark = of + "_digest = \"";
     const std::size_t from = text.find(mark);
     return from == text.npos ? "" : text.substr(from + mark.size(), 16);
   }
@@ -60,6 +60,21 @@ class SolverDigest : public ::testing::Test {
 };
 
 }  // namespace
+
+// What any result depends on: whatever computes or reads, and no picture.
+TEST_F(SolverDigest, OfTheProgramChangesWithEverythingThatComputes) {
+  std::string last = digest("g++ 12 -O3", "program");
+  EXPECT_EQ(last.size(), 16u);
+  write("app/figure.cpp", "another picture");
+  EXPECT_EQ(digest("g++ 12 -O3", "program"), last);
+  for (const char* file : {"models/law.cpp", "io/raw_table.cpp", "pointdriver/path/path.cpp",
+                           "calibration/fit.cpp", "input/read_fit.cpp", "study/fit/search.cpp"}) {
+    write(file, "changed");
+    const std::string next = digest("g++ 12 -O3", "program");
+    EXPECT_NE(next, last) << file;
+    last = next;
+  }
+}
 
 // Finished runs are kept as long as nothing that their bits depend on has changed, and no longer.
 TEST_F(SolverDigest, ChangesWithWhatARunsResultDependsOn) {

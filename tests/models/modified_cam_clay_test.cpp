@@ -432,7 +432,8 @@ TEST(CamClayInitial, Refusals) {
   given = {};
   given.p = 1e-3;
   EXPECT_EQ(refused(given),
-            "p: the initial p must be > p_sep: below it the point carries no stress");
+            "p: the initial p must be > p_sep, and compression is positive: below it the point "
+            "carries no stress");
   given.p = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refused(given), "p: p must be a finite pressure in Pa");
   given = {};
