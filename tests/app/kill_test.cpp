@@ -131,10 +131,10 @@ TEST(Killed, ADamagedCheckpointGivesWayToTheOneBeforeIt) {
   const fs::path& folder = scratch.path();
   std::ofstream(folder / "scene.toml") << scene;
   ASSERT_EQ(ended(start(folder, "straight", false)), 0);
-  // two interruptions leave two checkpoints; each comes once there are more rows
+  // two interruptions leave two checkpoints; each comes once there are (more) rows
   const auto size = [&] { return content_of(folder / "damaged/series.csv").size(); };
   for (const bool resume : {false, true}) {
-    const std::size_t before = std::max<std::size_t>(size(), 300);
+    const std::size_t before = std::max<std::size_t>(size(), 2000);
     const pid_t child = start(folder, "damaged", resume);
     for (int k = 0; k < 4000 && size() <= before; ++k)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
