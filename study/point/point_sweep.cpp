@@ -1,6 +1,7 @@
 #include "study/point/point_sweep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <fstream>
@@ -27,7 +28,34 @@ struct Driven {
   std::string rows;
 };
 
-Driven driven(const PointCase& one, std::size_t run, std::span<const point::Quantity> quantities) {
+/// What curves.csv has after the number of the run: any quantity, and the stage and the cycle, that
+/// one of the tests has.
+struct CurveColumns {
+  std::vector<point::Quantity> quantities;
+  StageColumns places;
+
+  explicit CurveColumns(const std::vector<PointCase>& cases) {
+    std::array<bool, point::quantity_count> used{};
+    for (const PointCase& one : cases) {
+      if (!one.test) continue;
+      for (const point::Quantity q : point::columns_of(find_law(one.test->law), one.test->test))
+        used[static_cast<std::size_t>(q)] = true;
+      const StageColumns own = stage_columns(one.test->test.path);
+      places = {places.stage || own.stage, places.cycle || own.cycle};
+    }
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (used[i]) quantities.push_back(static_cast<point::Quantity>(i));
+  }
+  std::vector<std::string> names() const {
+    std::vector<std::string> list{"run"};
+    for (const point::Quantity q : quantities) list.emplace_back(point::column_name(q));
+    if (places.stage) list.emplace_back("stage");
+    if (places.cycle) list.emplace_back("cycle");
+    return list;
+  }
+};
+
+Driven driven(const PointCase& one, std::size_t run, const CurveColumns& wanted) {
   Driven out;
   if (!one.test) {
     out.figures = {"refused", one.refusal, 0, 0.0, Json::object()};
@@ -37,24 +65,25 @@ Driven driven(const PointCase& one, std::size_t run, std::span<const point::Quan
   const std::size_t rows = result.curve.rows.size();
   out.figures = {result.failed() ? "failed" : "done", result.reason, rows, result.wall_s,
                  Json::object()};
-  const std::vector<std::vector<double>> columns = columns_of(*one.test, result, quantities);
+  const std::vector<std::vector<double>> columns = columns_of(*one.test, result, wanted.quantities);
   const std::vector<point::Path::Place> places = one.test->test.path.places();
+  const std::size_t width = wanted.names().size();
   std::vector<double> values;
-  values.reserve(rows * (columns.size() + 3));
+  values.reserve(rows * width);
   for (std::size_t row = 0; row < rows; ++row) {
     values.push_back(static_cast<double>(run));
     for (const std::vector<double>& column : columns) values.push_back(column[row] + 0.0);
     const auto [stage, cycle] = places[static_cast<std::size_t>(result.curve.rows[row].leg)];
-    values.push_back(stage);
-    values.push_back(cycle);
+    if (wanted.places.stage) values.push_back(stage);
+    if (wanted.places.cycle) values.push_back(cycle);
   }
-  out.rows = io::RowWriter::text_of(values, columns.size() + 3);
+  out.rows = io::RowWriter::text_of(values, width);
   if (rows == 0) return out;
   Json& figures = out.figures.figures;
   figures["fraction"] = result.curve.outcome.fraction;
-  for (std::size_t i = 0; i < quantities.size(); ++i)
+  for (std::size_t i = 0; i < columns.size(); ++i)
     if (std::isfinite(columns[i].back()))
-      figures[fmt::format("end_{}", point::column_name(quantities[i]))] = columns[i].back();
+      figures[fmt::format("end_{}", point::column_name(wanted.quantities[i]))] = columns[i].back();
   const Json laboratory = laboratory_json(result.figures);
   for (const Json::Member& member : laboratory.items())
     if (!member.value.is_array()) figures[member.key] = member.value;
@@ -62,18 +91,6 @@ Driven driven(const PointCase& one, std::size_t run, std::span<const point::Quan
 }
 
 }  // namespace
-
-std::vector<point::Quantity> PointSweep::quantities() const {
-  std::vector<bool> used(point::quantity_count);
-  for (const PointCase& one : cases_)
-    if (one.test)
-      for (const point::Quantity q : point::columns_of(find_law(one.test->law), one.test->test))
-        used[static_cast<std::size_t>(q)] = true;
-  std::vector<point::Quantity> list;
-  for (std::size_t i = 0; i < used.size(); ++i)
-    if (used[i]) list.push_back(static_cast<point::Quantity>(i));
-  return list;
-}
 
 /// The log's complete lines, in the order of the runs; what is behind a broken one is not kept.
 void PointSweep::take_up(const io::ResultFolder& folder) {
@@ -93,11 +110,8 @@ void PointSweep::take_up(const io::ResultFolder& folder) {
 
 io::ExitCode PointSweep::run(const io::ResultFolder& folder, int threads, bool resume) {
   if (resume) take_up(folder);
-  const std::vector<point::Quantity> columns = quantities();
-  std::vector<std::string> names{"run"};
-  for (const point::Quantity q : columns) names.emplace_back(point::column_name(q));
-  names.emplace_back("stage");
-  names.emplace_back("cycle");
+  const CurveColumns columns(cases_);
+  const std::vector<std::string> names = columns.names();
   const std::filesystem::path file = folder.file("curves.csv");
   io::RowWriter curves = kept_ > 0
                              ? io::RowWriter::continued(file, names, static_cast<double>(kept_))

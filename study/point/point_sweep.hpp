@@ -50,7 +50,6 @@ class PointSweep {
   const std::vector<PointFigures>& finished() const { return finished_; }
 
  private:
-  std::vector<point::Quantity> quantities() const;
   void take_up(const io::ResultFolder& folder);
   std::string log_line(std::size_t run) const;
 
