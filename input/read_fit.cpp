@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "input/program_identity.hpp"
 #include "input/read_fit_parameters.hpp"
