@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "mpm/output/rest_pressure.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace {

@@ -184,4 +184,8 @@ bool raise_top_to_cells(Scene& scene);
 /// InputError whose key is a TOML path such as "grid.h", "body[0].size" or "body[1].law.kappa".
 void validate(const Scene& scene);
 
+/// Throws InputError where steps of dt would be more than anybody waits for: 1e11 of the smallest
+/// scene take days, and what lies beyond is a slip of the pen.
+void require_end_in_reach(const Scene& scene, double dt);
+
 }  // namespace repose::mpm

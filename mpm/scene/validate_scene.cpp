@@ -161,12 +161,14 @@ void check_cells(const Scene& scene) {
   // first of all: what follows counts cells in integers
   double cells = 1.0;
   for (std::size_t k = 0; k < scene.dimensions(); ++k) cells *= scene.domain[k] / scene.h;
-  if (cells > max_cells)
-    throw InputError(
-        "grid.h",
-        "the box has " + number(cells, 3) + " cells, more than memory is likely to hold (" +
-            number(max_cells) + "); h >= " +
-            number(scene.h * per_axis(scene, cells / max_cells) * 1.0005, 3) + " m would do");
+  if (!(cells <= max_cells)) {
+    const double least = scene.h * per_axis(scene, cells / max_cells) * 1.0005;
+    throw InputError("grid.h",
+                     "the box has " + number(cells, 3) +
+                         " cells, more than memory is likely to hold (" + number(max_cells) + ")" +
+                         (std::isfinite(least) ? "; h >= " + number(least, 3) + " m would do"
+                                               : "; give a larger h"));
+  }
   if (!is_whole_multiple(scene.domain[0], scene.h)) {
     std::string near = nearby_h(scene, true);
     if (near.empty()) near = nearby_h(scene, false);
@@ -433,6 +435,17 @@ void validate(const Scene& scene) {
   check_viscosity(scene);
   check_sleep(scene);
   check_relaxation(scene);
+}
+
+void require_end_in_reach(const Scene& scene, double dt) {
+  constexpr double most = 1e11;
+  const double steps = scene.end_time / dt;
+  if (steps <= most) return;
+  throw InputError(scene.dt ? "step.dt" : "scene.end_time",
+                   "steps of " + number(dt, 3) + " s would be " + number(steps, 3) + " to " +
+                       number(scene.end_time) +
+                       " s, more than anybody waits for (1e11); what makes them short is a large "
+                       "bulk modulus over the density, small cells, or an explicit viscosity");
 }
 
 }  // namespace repose::mpm

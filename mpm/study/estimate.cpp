@@ -47,6 +47,7 @@ Estimate estimate(const Scene& scene, int threads) {
   e.points = simulation.point_count();
   e.live_cells = simulation.live_cells();
   e.first_dt_s = simulation.next_dt();
+  require_end_in_reach(scene, e.first_dt_s);
 
   // Fastest signal on the way: free fall through the height of the scene, and the stiffness under
   // twice the weight of the highest body (what an impact from rest brings).
@@ -83,8 +84,10 @@ Estimate estimate(const Scene& scene, int threads) {
   for (const std::string& warning : simulation.warnings()) e.warnings.push_back(warning);
   if (!scene.dt && e.steps > 1e7)
     e.warnings.push_back(fmt::format(
-        "the stable step of {:.3g} s means {:.3g} steps: a regularised viscosity limits it "
-        "(step.viscosity = \"implicit\" and form = \"elastoviscoplastic\" have no such limit)",
+        "the stable step of {:.3g} s means {:.3g} steps: a large bulk modulus over the density, "
+        "small "
+        "cells or an explicit viscosity make it short (step.viscosity = \"implicit\" and form = "
+        "\"elastoviscoplastic\" have no limit by viscosity)",
         typical, e.steps));
   return e;
 }

@@ -119,6 +119,7 @@ io::ExitCode Run::go() {
 }
 
 void Run::start() {
+  mpm::require_end_in_reach(scene_, simulation_.next_dt());
   if (fs::exists(folder_.checkpoint()))
     voice_.warn(fmt::format("{} held an interrupted run, which begins anew; --resume continues one",
                             folder_.path().string()));

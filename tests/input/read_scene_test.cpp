@@ -232,6 +232,11 @@ TEST(ReadSceneErrors, the_least_and_the_most_that_make_sense) {
                           "scene.end_time=-1", "grid.h=0", "grid.h=-0.01", "step.courant=0",
                           "step.courant=1.41", "body[0].law.mu_0=-0.1", "body[0].law.K=0"})
     EXPECT_TRUE(refused(set)) << set << ": " << problems(granular, {set});
+  // sizes beyond all reason are refused at once, before anything counts cells in integers
+  for (const char* set : {"grid.h=1e-308", "grid.h=1e-20", "grid.h=1e-9", "grid.h=1e300",
+                          "domain.size=[1e17,0.5]", "domain.size=[1e300,1e300]",
+                          "domain.size=[1e-300,1e-300]", "output.series_interval=1e-300"})
+    EXPECT_NE(problems(granular, {set}), "") << set;
   for (const char* set : {"scene.tilt_deg=90", "scene.tilt_deg=-90", "step.courant=1.4"})
     EXPECT_EQ(problems(granular, {set}), "") << set;
 }
