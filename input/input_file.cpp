@@ -219,6 +219,11 @@ InputFile InputFile::parse(std::string_view text, std::string name,
   const Origin top{input.name_, 1, 1};
   input.origins_[""] = top;
   input.note_origins(input.root_, "", top);
+  return input.with(overrides);
+}
+
+InputFile InputFile::with(std::span<const std::string> overrides) const {
+  InputFile input = *this;
   for (const std::string& one : overrides) {
     // law.M changes the law of another file; law itself stands in for it
     if (one.find("law.") < one.find('=')) input.take_laws_over();

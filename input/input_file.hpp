@@ -59,6 +59,9 @@ class InputFile {
   static InputFile parse(std::string_view text, std::string name,
                          std::span<const std::string> overrides = {});
 
+  /// This file, as it was parsed, with further overrides. Errors: BadInput.
+  InputFile with(std::span<const std::string> overrides) const;
+
   const toml::table& root() const { return root_; }
   const std::string& name() const { return name_; }
 

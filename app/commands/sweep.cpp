@@ -23,21 +23,20 @@ namespace {
 
 using io::Json;
 
-/// Every run, read and checked before the first is begun: `read` fills a case from what --set would
-/// say. One that cannot be used is a row of the table; if none can, the first one's mistakes are
-/// the file's.
+/// Every run, read and checked before the first is begun: `read` fills a case from the file with
+/// what the run sets. One that cannot be used is a row of the table; if none can, the first one's
+/// mistakes are the file's.
 template <class Case, class Read>
-std::vector<Case> cases_of(const input::ParameterSets& sets, const CommonOptions& options,
+std::vector<Case> cases_of(const input::InputFile& file, const input::ParameterSets& sets,
                            const Read& read) {
   std::vector<Case> cases;
   std::size_t refused = 0;
   for (std::size_t k = 0; k < sets.values.size(); ++k) {
     Case& one = cases.emplace_back();
     one.values = sets.values[k];
-    std::vector<std::string> all = options.sets;
-    for (std::string& set : sets.sets(k)) all.push_back(std::move(set));
     try {
-      read(one, all);
+      input::InputFile run = file.with(sets.sets(k));
+      read(one, run, k + 1);
     } catch (const input::BadInput& error) {
       one.refusal = fmt::format("{}", fmt::join(error.problems(), "; "));
       ++refused;
@@ -169,10 +168,9 @@ io::ExitCode run_point_sweep(const std::string& path, const input::InputFile& fi
   const SweepFolder at(path, file, options);
   study::PointSweep sweep(
       sets.keys,
-      cases_of<study::PointCase>(sets, options,
-                                 [&](study::PointCase& one, const std::vector<std::string>& all) {
-                                   input::InputFile input = input::open_test(path, all);
-                                   one.test = input::read_point_test(input);
+      cases_of<study::PointCase>(input::open_test(path, options.sets), sets,
+                                 [](study::PointCase& one, input::InputFile& run, std::size_t) {
+                                   one.test = input::read_point_test(run);
                                  }));
   if (at.is_kept()) return io::ExitCode::done;
   const io::ExitCode code = sweep.run(at.folder(), options.threads, at.begin());
@@ -191,17 +189,16 @@ io::ExitCode run_point_sweep(const std::string& path, const input::InputFile& fi
 io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& file,
                              const input::ParameterSets& sets, const CommonOptions& options) {
   const SweepFolder at(path, file, options);
-  std::size_t number = 0;
   study::SceneSweep sweep(
-      sets.keys,
-      cases_of<study::SceneCase>(
-          sets, options, [&](study::SceneCase& one, const std::vector<std::string>& all) {
-            const std::string run = study::SceneSweep::folder_name(++number);
-            input::InputFile input = input::open_scene(path, all);
-            one.file = input::read_scene(input);
-            one.file->scene.name += "_" + run;
-            one.input = input::resolved_input(*one.file, fmt::format("Run {} of {}", run, path));
-          }));
+      sets.keys, cases_of<study::SceneCase>(
+                     input::open_scene(path, options.sets), sets,
+                     [&](study::SceneCase& one, input::InputFile& run, std::size_t number) {
+                       const std::string name = study::SceneSweep::folder_name(number);
+                       one.file = input::read_scene(run);
+                       one.file->scene.name += "_" + name;
+                       one.input = input::resolved_input(*one.file,
+                                                         fmt::format("Run {} of {}", name, path));
+                     }));
   if (at.is_kept()) return io::ExitCode::done;
   const auto tell = [&](std::size_t run) {
     const study::RunSummary& summary = sweep.cases()[run - 1].summary;

@@ -244,5 +244,22 @@ TEST_F(Sweep, RunsOfAScene) {
   EXPECT_EQ(read("alone/series.csv"), read("a/runs/0002/series.csv"));
 }
 
+// A run that is refused keeps its number: those behind it lie in the folders of theirs.
+TEST_F(Sweep, ARefusedRunOfASceneKeepsItsNumber) {
+  const std::string file =
+      write("s.toml",
+            scene +
+                "[sweep]\nlist = [{ \"body[0].law.eta\" = 1.0 }, { \"body[3].law.eta\" = 1.0 }, "
+                "{ \"body[0].law.eta\" = 100.0 }]\n");
+  ASSERT_EQ(run("run", file, "a", {"--threads", "1"}), 0);
+  Table rows = table_of(folder_ / "a/sweep.csv");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[1]["status"], "refused");
+  EXPECT_NE(rows[1]["reason"].find("there is only body[0]"), std::string::npos);
+  EXPECT_EQ(rows[2]["status"], "done");
+  EXPECT_TRUE(fs::exists(folder_ / "a/runs/0003/series.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "a/runs/0002"));
+}
+
 }  // namespace
 }  // namespace repose::app
