@@ -1,7 +1,7 @@
 #include "input/read_sweep.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include "input/toml_text.hpp"
 #include "io/atomic_file.hpp"
 #include "io/measured_table.hpp"
+#include "io/number_text.hpp"
 
 namespace repose::input {
 namespace {
@@ -89,9 +90,10 @@ void read_list(TomlReader& table, ParameterSets& sets) {
                         return node.is_table() && !node.as_table()->empty();
                       });
   if (!tables || list->size() > most_sweep_runs) {
-    table.report("list", fmt::format("sweep.list must be a list of 1 to {} tables, "
-                                     "[{{ \"initial.ocr\" = 1 }}, {{ \"initial.ocr\" = 2 }}]",
-                                     most_sweep_runs));
+    table.report("list",
+                 fmt::format("sweep.list must be a list of 1 to {} tables with at least "
+                             "one key each, [{{ \"initial.ocr\" = 1 }}, {{ \"initial.ocr\" = 2 }}]",
+                             most_sweep_runs));
     return;
   }
   for (const toml::node& node : *list) {
@@ -111,12 +113,18 @@ void read_list(TomlReader& table, ParameterSets& sets) {
   }
 }
 
-/// A cell as TOML: a number, true or false as it is, anything else a string.
-std::string cell_text(std::string_view cell) {
+/// A cell as TOML: a number in any spelling that measured tables have, true or false as it is,
+/// anything else a string.
+std::string cell_text(std::string_view cell, char decimal) {
   if (cell.empty() || cell == "true" || cell == "false") return std::string(cell);
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
-  if (error == std::errc() && end == cell.data() + cell.size()) return std::string(cell);
+  const io::CellShape shape = io::shape_of(cell);
+  if (shape.kind == io::CellKind::blank) return "";
+  if (shape.kind == io::CellKind::number && (shape.mark == 0 || shape.mark == decimal))
+    if (const auto number = io::value_of(cell, decimal)) {
+      const bool whole = shape.mark == 0 && cell.find_first_of("eEdD") == std::string_view::npos &&
+                         std::abs(*number) < 1e15;
+      return whole ? fmt::format("{:.0f}", *number) : toml_number(*number);
+    }
   return toml_string(cell);
 }
 
@@ -137,13 +145,18 @@ void read_table(TomlReader& table, ParameterSets& sets) {
         return;
       }
       if (!may_vary(table, "table", header.text)) return;
+      if (std::count(sets.keys.begin(), sets.keys.end(), header.text) > 1) {
+        table.report("table",
+                     fmt::format("{}: two columns are called {}", file.string(), header.text));
+        return;
+      }
     }
     if (rows.rows() > most_sweep_runs)
       table.report("table", fmt::format("{}: more than {} runs", file.string(), most_sweep_runs));
     for (std::size_t row = 0; row < rows.rows() && table.file().ok(); ++row) {
       std::vector<std::string>& values = sets.values.emplace_back();
       for (std::size_t column = 0; column < rows.columns(); ++column)
-        values.push_back(cell_text(rows.cell(row, column)));
+        values.push_back(cell_text(rows.cell(row, column), rows.layout().decimal));
     }
   } catch (const io::TableError& error) {
     table.report("table", error.what());
@@ -160,6 +173,15 @@ std::vector<std::string> ParameterSets::sets(std::size_t k) const {
   std::vector<std::string> list;
   for (std::size_t i = 0; i < keys.size(); ++i)
     if (!values[k][i].empty()) list.push_back(fmt::format("{}={}", keys[i], values[k][i]));
+  return list;
+}
+
+std::vector<std::string> ParameterSets::shown(std::size_t k) const {
+  std::vector<std::string> list = values[k];
+  for (std::string& value : list)
+    if (value.size() >= 2 && (value.front() == '"' || value.front() == '\'') &&
+        value.back() == value.front() && value.find('\\') == std::string::npos)
+      value = value.substr(1, value.size() - 2);
   return list;
 }
 

@@ -18,6 +18,8 @@ struct ParameterSets {
 
   /// Of run k, as --set takes them.
   std::vector<std::string> sets(std::size_t k) const;
+  /// Of run k, as a table shows them: texts without their quotes.
+  std::vector<std::string> shown(std::size_t k) const;
 };
 
 /// Most runs of a sweep.

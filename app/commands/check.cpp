@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/chart.hpp"
+#include "app/commands/sweep.hpp"
 #include "input/file_kind.hpp"
 #include "input/read_chart_set.hpp"
 #include "input/read_fit.hpp"
@@ -142,7 +143,16 @@ io::ExitCode check_charts(const std::string& path, const CommonOptions& options)
 io::ExitCode check_file(const std::string& path, const CommonOptions& options) {
   input::InputFile input = input::open_input(path, options.sets);
   if (input::is_chart_set(input)) return check_charts(path, options);
-  switch (input::kind_of(input)) {
+  const input::FileKind kind = input::kind_of(input);
+  if (kind == input::FileKind::scene || kind == input::FileKind::point_test) {
+    // read on a copy: what it holds besides is read below
+    input::InputFile copy = input.with({});
+    if (const std::optional<input::ParameterSets> sweep = input::read_sweep(copy)) {
+      copy.throw_if_bad();
+      check_sweep(path, *sweep, kind == input::FileKind::scene, options);
+    }
+  }
+  switch (kind) {
     case input::FileKind::scene:
       return check_scene(input, options);
     case input::FileKind::point_test:

@@ -33,7 +33,7 @@ std::vector<Case> cases_of(const input::InputFile& file, const input::ParameterS
   std::size_t refused = 0;
   for (std::size_t k = 0; k < sets.values.size(); ++k) {
     Case& one = cases.emplace_back();
-    one.values = sets.values[k];
+    one.values = sets.shown(k);
     try {
       input::InputFile run = file.with(sets.sets(k));
       read(one, run, k + 1);
@@ -224,6 +224,34 @@ io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& fi
       reasons.emplace_back(k + 1, s.reason);
   return at.end(sweep, code, Json::object(), reasons,
                 drawn ? "sweep.csv, sweep.svg, runs/" : "sweep.csv, runs/");
+}
+
+void check_sweep(const std::string& path, const input::ParameterSets& sets, bool is_scene,
+                 const CommonOptions& options) {
+  std::size_t refused = 0, first = 0;
+  std::string reason;
+  const auto look = [&](const auto& cases) {
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      if (cases[k].refusal.empty()) continue;
+      if (refused++ > 0) continue;
+      first = k + 1;
+      reason = cases[k].refusal;
+    }
+  };
+  if (is_scene)
+    look(cases_of<study::SceneCase>(
+        input::open_scene(path, options.sets), sets,
+        [](study::SceneCase&, input::InputFile& run, std::size_t) { input::read_scene(run); }));
+  else
+    look(cases_of<study::PointCase>(input::open_test(path, options.sets), sets,
+                                    [](study::PointCase&, input::InputFile& run, std::size_t) {
+                                      input::read_point_test(run);
+                                    }));
+  if (!options.quiet)
+    fmt::print("  sweep        {} runs over {}\n", sets.values.size(), fmt::join(sets.keys, ", "));
+  if (refused > 0)
+    fmt::print(stderr, "warning: {} of them cannot be used; the first is run {}: {}\n", refused,
+               first, reason);
 }
 
 }  // namespace repose::app

@@ -181,6 +181,10 @@ LegSpec leg_of(const Stage& stage) {
   }
   if (!stage.goal) no_such_test(stage, "a stage needs a value to reach (axial_strain, q_end, ...)");
   leg.driver = 5;
+  // compression at constant σ_a, or constant p, lowers σ_r; so does the stress that drives both
+  leg.goal_falls =
+      stage.kind == Kind::triaxial && reaches(stage, {Quantity::sigma_r}) &&
+      (stage.condition == Condition::constant_sigma_a || stage.condition == Condition::constant_p);
   leg.goal = stage.goal;
   leg.goal_is_event = !driver.leads;
   leg.goal_rate = stage.drive == Drive::strain ? stage.rate : stage.stress_rate;

@@ -41,6 +41,7 @@ struct LegSpec {
   int driver = -1;  ///< row whose sign is chosen; −1: the rows are meant as they are
   std::optional<Goal> goal;
   bool goal_is_event = false;
+  bool goal_falls = false;    ///< the goal's quantity falls while the driver row's rate is positive
   double goal_rate = 1.0;     ///< |d goal/dt| while driven (goal not an event) [unit/s]
   double strain_limit = 1.0;  ///< of the driver, for a goal located as an event [-]
   double duration = 0.0;      ///< without goal [s]

@@ -57,7 +57,7 @@ bool of_triaxial_cell(const LegSpec& leg) {
          (leg.condition == Condition::drained || leg.condition == Condition::undrained);
 }
 
-/// The rows of a stage; the first is the state in which it begins.
+/// Rows of a stage, or of one of its legs; the first is the state in which it begins.
 struct StageRows {
   int number = 0;
   std::size_t first_leg = 0, start = 0, end = 0;  ///< rows start … end − 1
@@ -77,7 +77,9 @@ class Reader {
       const int stage = places[leg].stage;
       if (stages_.empty() || stages_.back().number != stage)
         stages_.push_back({stage, leg, row == 0 ? 0 : row - 1, row});
-      stages_.back().end = row + 1;
+      if (legs_.empty() || legs_.back().first_leg != leg)
+        legs_.push_back({stage, leg, row == 0 ? 0 : row - 1, row});
+      stages_.back().end = legs_.back().end = row + 1;
     }
   }
 
@@ -85,11 +87,13 @@ class Reader {
     LaboratoryFigures all;
     all.undrained = undrained_strength();
     all.friction = friction();
-    all.stiffness = stiffness();
-    for (const StageRows& stage : stages_)
-      if (of_triaxial_cell(leg(stage)) || leg(stage).kind == Kind::simple_shear)
-        secants(stage, secants_at, all.secants);
-    double largest = 0.0;
+    if (law_.has_stress_memory) {
+      all.stiffness = stiffness();
+      for (const StageRows& stage : stages_)
+        if (of_triaxial_cell(leg(stage)) || leg(stage).kind == Kind::simple_shear)
+          secants(stage, secants_at, all.secants);
+    }
+    double largest = carried_before();
     for (const StageRows& stage : stages_)
       if (compresses(leg(stage))) {
         all.oedometer |= leg(stage).kind == Kind::oedometer;
@@ -114,31 +118,58 @@ class Reader {
     return values;
   }
 
+  const StageRows& stage_of(const StageRows& leg) const {
+    return *std::find_if(stages_.begin(), stages_.end(),
+                         [&](const StageRows& stage) { return stage.number == leg.number; });
+  }
+
+  /// A normal strain of the stage as the test measures strains, from logarithmic ones.
+  double measured_strain(double logarithmic) const {
+    return test_.path.measure == StrainMeasure::logarithmic ? logarithmic
+                                                            : -std::expm1(-logarithmic);
+  }
+
   /// The strain that a stage of this kind is plotted over, from its start.
   double strain(const StageRows& stage, std::size_t row) {
-    const Kind kind = leg(stage).kind;
-    const Quantity q = kind == Kind::simple_shear ? Quantity::gamma
-                       : kind == Kind::triaxial   ? Quantity::eps_a
-                                                  : Quantity::eps_q;
-    const double x = column(q)[row] - column(q)[stage.start];
-    return kind == Kind::simple_shear ? std::abs(x) : x;
+    const auto axial = [&](std::size_t k) { return -curve_.rows[k].strain[1]; };
+    switch (leg(stage).kind) {
+      case Kind::triaxial:
+        return measured_strain(axial(row) - axial(stage.start));
+      case Kind::simple_shear:
+        return column(Quantity::gamma)[row] - column(Quantity::gamma)[stage.start];
+      default:
+        return column(Quantity::eps_q)[row] - column(Quantity::eps_q)[stage.start];
+    }
+  }
+
+  /// q of a triaxial leg and τ of a sheared one, positive in the sense in which it is sheared: that
+  /// of the largest change from its start. Of the rows after the start.
+  std::vector<double> sheared(const StageRows& rows) {
+    const auto& stress = column(leg(rows).kind == Kind::simple_shear ? Quantity::tau : Quantity::q);
+    double most = 0.0;
+    for (std::size_t row = rows.start + 1; row < rows.end; ++row)
+      if (std::abs(stress[row] - stress[rows.start]) > std::abs(most))
+        most = stress[row] - stress[rows.start];
+    std::vector<double> values;
+    for (std::size_t row = rows.start + 1; row < rows.end; ++row)
+      values.push_back(most < 0.0 ? -stress[row] : stress[row]);
+    return values;
   }
 
   std::optional<UndrainedStrength> undrained_strength() {
-    std::vector<double> shear;
     std::optional<UndrainedStrength> best;
-    for (const StageRows& stage : stages_) {
-      if (!at_constant_volume(leg(stage))) continue;
-      const bool triaxial = leg(stage).kind == Kind::triaxial;
-      const auto& stress = column(triaxial ? Quantity::q : Quantity::tau);
-      for (std::size_t row = stage.start; row < stage.end; ++row) {
-        shear.push_back((triaxial ? 0.5 : 1.0) * std::abs(stress[row]));
-        if (best && shear.back() <= best->S_u) continue;
-        best = {shear.back(), strain(stage, row), After::rising,
-                triaxial ? skempton(stage, row) : nan};
-      }
+    for (const StageRows& rows : legs_) {
+      if (!at_constant_volume(leg(rows)) || rows.end < rows.start + 2) continue;
+      const bool triaxial = leg(rows).kind == Kind::triaxial;
+      std::vector<double> shear = sheared(rows);
+      for (double& x : shear) x *= triaxial ? 0.5 : 1.0;
+      const auto largest = std::max_element(shear.begin(), shear.end());
+      if (!(*largest > 0.0) || (best && *largest <= best->S_u)) continue;
+      const StageRows& stage = stage_of(rows);
+      const std::size_t row = rows.start + 1 + static_cast<std::size_t>(largest - shear.begin());
+      best = {rows.number, *largest, strain(stage, row), after_largest(shear),
+              triaxial ? skempton(stage, row) : nan};
     }
-    if (best) best->after = after_largest(shear);
     return best;
   }
 
@@ -152,35 +183,47 @@ class Reader {
   }
 
   std::optional<Friction> friction() {
-    std::vector<double> angles;
     std::optional<Friction> best;
     std::size_t last = 0;
-    bool plane_strain = true;
-    for (const StageRows& stage : stages_) {
-      const LegSpec& spec = leg(stage);
-      if (!shears(spec)) continue;
-      for (std::size_t row = stage.start; row < stage.end; ++row) {
-        const std::array<double, 3> s = principal(curve_.rows[row].stress);
-        if (!(s[2] >= 0.0) || !(s[0] > 0.0)) continue;
-        angles.push_back(degrees(std::asin((s[0] - s[2]) / (s[0] + s[2]))));
-        if (!best) best.emplace();
-        if (angles.size() == 1 || angles.back() > best->peak) {
-          best->peak = angles.back();
-          best->strain = strain(stage, row);
-        }
+    bool plane_strain = true, tension = false, in_shear = true;
+    double on_plane = 0.0;
+    for (const StageRows& rows : legs_) {
+      const LegSpec& spec = leg(rows);
+      if (!shears(spec) || rows.end < rows.start + 2) continue;
+      in_shear = in_shear && spec.kind == Kind::simple_shear;
+      const std::vector<double> sense =
+          spec.kind == Kind::custom ? std::vector<double>() : sheared(rows);
+      std::vector<double> angles;
+      std::size_t at = 0;
+      double peak = -1.0;
+      for (std::size_t row = rows.start + 1; row < rows.end; ++row) {
+        last = row;
         if (spec.kind == Kind::simple_shear)
-          best->on_plane =
-              std::max(best->on_plane, degrees(std::atan2(std::abs(column(Quantity::tau)[row]),
-                                                          column(Quantity::sigma_a)[row])));
+          on_plane = std::max(on_plane, degrees(std::atan2(std::abs(column(Quantity::tau)[row]),
+                                                           column(Quantity::sigma_a)[row])));
         else
           plane_strain = plane_strain && spec.kind == Kind::custom && smallest_strain(row) < 1e-12;
-        last = row;
+        const double angle = friction_angle(row);
+        tension = tension || std::isnan(angle);
+        // what the start leaves in the other sense is not mobilised by this shear
+        if (std::isnan(angle) || (!sense.empty() && sense[row - rows.start - 1] < 0.0)) continue;
+        angles.push_back(angle);
+        if (angle > peak) {
+          peak = angle;
+          at = row;
+        }
       }
-      if (spec.kind != Kind::simple_shear && best) best->on_plane = nan;
+      if (angles.empty() || (best && peak <= best->peak)) continue;
+      best.emplace();
+      best->stage = rows.number;
+      best->peak = peak;
+      best->strain = strain(stage_of(rows), at);
+      best->after = after_largest(angles);
     }
     if (!best) return best;
-    best->after = after_largest(angles);
-    best->end = angles.back();
+    best->tension = tension;
+    best->end = friction_angle(last);
+    best->on_plane = in_shear ? on_plane : nan;
     const LegSpec& spec = test_.path.legs[static_cast<std::size_t>(curve_.rows[last].leg)].spec();
     const std::array<double, 3> s = principal(curve_.rows[last].stress);
     if (spec.kind == Kind::triaxial)
@@ -191,6 +234,13 @@ class Reader {
       best->b = s[0] > s[2] ? (s[1] - s[2]) / (s[0] - s[2]) : nan;
     best->critical = critical_friction_angle(critical_ratio(), best->b);
     return best;
+  }
+
+  /// Mobilised in a row; NaN in tension.
+  double friction_angle(std::size_t row) const {
+    const std::array<double, 3> s = principal(curve_.rows[row].stress);
+    if (!(s[2] >= 0.0) || !(s[0] > 0.0)) return nan;
+    return degrees(std::asin((s[0] - s[2]) / (s[0] + s[2])));
   }
 
   /// The smallest normal strain of a row: 0 where a direction is kept from straining.
@@ -257,9 +307,9 @@ class Reader {
     if (of == nullptr) return std::nullopt;
     const Curve ends = located(*of, {Goal{Quantity::q, q_half}});
     if (ends.rows.size() < 2 || is_failure(ends.outcome.status)) return std::nullopt;
-    const auto q = column(Quantity::q, ends), eps_a = column(Quantity::eps_a, ends);
-    const double strained = eps_a[1] - eps_a[0];
-    return Stiffness{(q[1] - q[0]) / strained, strained};
+    const auto q = column(Quantity::q, ends);
+    const double strained = measured_strain(ends.rows[0].strain[1] - ends.rows[1].strain[1]);
+    return Stiffness{of->number, (q[1] - q[0]) / strained, strained};
   }
 
   void secants(const StageRows& stage, std::span<const double> at, std::vector<SecantShear>& all) {
@@ -271,8 +321,15 @@ class Reader {
     const double factor = triaxial ? 2.0 / 3.0 : 1.0;
     const std::size_t next = std::min(stage.start + 1, stage.end - 1);
     const double sign = column(measure)[next] < column(measure)[stage.start] ? -1.0 : 1.0;
+    double reached = 0.0;
+    for (std::size_t row = stage.start; row < stage.end; ++row)
+      reached = std::max(reached, sign * (column(measure)[row] - column(measure)[stage.start]));
     for (const double gamma : at) {
       SecantShear secant{stage.number, gamma, nan};
+      if (factor * gamma > reached * (1.0 + 1e-9)) {
+        all.push_back(secant);
+        continue;
+      }
       const Curve ends = located(stage, {Goal{measure, sign * factor * gamma, true}});
       if (ends.rows.size() >= 2 && !is_failure(ends.outcome.status)) {
         const auto stress = column(triaxial ? Quantity::q : Quantity::tau, ends);
@@ -298,12 +355,29 @@ class Reader {
     return {mix(v[row], v[next]) - 1.0, mix(std::log(p[row]), std::log(p[next]))};
   }
 
+  /// The largest x of the branches before the test, as its start says; 0 where that is not known.
+  double carried_before() {
+    const InitialConditions& given = test_.initial;
+    const auto first = std::find_if(stages_.begin(), stages_.end(),
+                                    [&](const StageRows& stage) { return compresses(leg(stage)); });
+    if (first == stages_.end()) return 0.0;
+    const double sigma_a = column(Quantity::sigma_a).front(), p = column(Quantity::p).front();
+    const bool over_p = leg(*first).kind == Kind::isotropic;
+    if (over_p) return given.ocr ? *given.ocr * p : given.ocr_v ? nan : 0.0;
+    if (given.ocr_v) return *given.ocr_v * sigma_a;
+    return given.ocr && *given.ocr > 1.0 ? nan : 0.0;
+  }
+
   void branches(const StageRows& stage, double& largest, std::vector<CompressionBranch>& all) {
     using Way = CompressionBranch::Way;
     const auto& x = column(leg(stage).kind == Kind::oedometer ? Quantity::sigma_a : Quantity::p);
     const auto& p_c = column(Quantity::p_c);
     const bool knows_yield = state_index(law_.state, "p_c") >= 0;
-    largest = std::max(largest, x[stage.start]);
+    // NaN stays until virgin compression tells
+    const auto carry = [&](double now, bool is_virgin) {
+      largest = std::isnan(largest) && !is_virgin ? largest : std::fmax(largest, now);
+    };
+    carry(x[stage.start], false);
     const auto way_of = [&](std::size_t row) {
       if (x[row] < x[row - 1]) return Way::unloading;
       const bool yields = knows_yield ? p_c[row] > p_c[row - 1] * (1.0 + 1e-9) : x[row] > largest;
@@ -313,9 +387,9 @@ class Reader {
     while (from + 1 < stage.end) {
       const Way way = way_of(from + 1);
       std::size_t to = from + 1;
-      largest = std::max(largest, x[to]);
-      while (to + 1 < stage.end && way_of(to + 1) == way) largest = std::max(largest, x[++to]);
-      if (x[from] > 0.0 && x[to] > 0.0 && x[from] != x[to])
+      carry(x[to], way == Way::virgin);
+      while (to + 1 < stage.end && way_of(to + 1) == way) carry(x[++to], way == Way::virgin);
+      if (x[from] > 0.0 && x[to] > 0.0 && std::abs(std::log(x[to] / x[from])) > 1e-9)
         all.push_back(branch(stage, way, x, from, to, largest));
       from = to;
     }
@@ -331,10 +405,12 @@ class Reader {
         is_virgin ? std::max(x[to > from + 1 ? from + 1 : from], 0.5 * x[to]) : x[from];
     const At first = at(x, begin, from, to), last = at(x, x[to], from, to);
     const double ln_x = std::log(x[to] / begin);
-    b.C = (first.e - last.e) / ln_x * std::numbers::ln10;
+    // one interval in which yield lies is neither
+    const bool mixed = is_virgin && to == from + 1 && from > stage.start;
+    b.C = mixed ? nan : (first.e - last.e) / ln_x * std::numbers::ln10;
     b.p_over_x = (last.ln_p - first.ln_p) / ln_x;
     b.K0 = column(Quantity::sigma_r)[to] / column(Quantity::sigma_a)[to];
-    b.OCR = std::max(1.0, largest / x[to]);
+    b.OCR = std::isnan(largest) ? nan : std::max(1.0, largest / x[to]);
     b.C_over_kappa = nan;
     if (const int i = parameter_index(law_.parameters, "kappa"); i >= 0 && !is_virgin) {
       const double v = law_.option == "v-ln_p" ? 1.0 : 1.0 + 0.5 * (first.e + last.e);
@@ -347,7 +423,7 @@ class Reader {
   std::span<const double> theta_;
   const PointTest& test_;
   const Curve& curve_;
-  std::vector<StageRows> stages_;
+  std::vector<StageRows> stages_, legs_;
   std::array<std::vector<double>, quantity_count> columns_;
 };
 

@@ -12,28 +12,32 @@
 
 namespace repose::point {
 
-/// What becomes of a quantity after its largest value.
+/// What becomes of a quantity after its largest value, in the leg (a stage, or half a cycle) that
+/// has it.
 enum class After : std::uint8_t {
   peak,     ///< it falls again, by more than 1 %
   plateau,  ///< it changes by less than 1 % over the last tenth of the rows
-  rising,   ///< the test ended on the way: the largest value is no strength
+  rising,   ///< the leg ended on the way: the largest value is no strength
 };
 
 /// The largest shear stress carried at constant volume.
 struct UndrainedStrength {
-  double S_u = 0.0;     ///< triaxial: |σ_a − σ_r|/2; simple shear: |τ| [Pa]
+  int stage = 0;
+  double S_u = 0.0;  ///< triaxial: |σ_a − σ_r|/2; simple shear: |τ|, in the sense of the shear [Pa]
   double strain = 0.0;  ///< there, from the start of the stage: ε_a, or γ [-]
   After after = After::rising;
   /// Skempton's A = (Δu − Δσ_3)/(Δσ_1 − Δσ_3) there, in total stresses with σ_r kept; NaN in shear.
   double A_f = 0.0;
 };
 
-/// Mobilised friction, sin φ′ = (σ′_1 − σ′_3)/(σ′_1 + σ′_3).
+/// Mobilised friction, sin φ′ = (σ′_1 − σ′_3)/(σ′_1 + σ′_3), in the sense of the shear.
 struct Friction {
-  double peak = 0.0;    ///< the largest in the shear stages [deg]
-  double strain = 0.0;  ///< there, from the start of the stage: ε_a, or |γ|, or ε_q [-]
+  int stage = 0;
+  double peak = 0.0;    ///< the largest after the start of a shear stage [deg]
+  double strain = 0.0;  ///< there, from the start of the stage: ε_a, or γ, or ε_q [-]
   After after = After::rising;
-  double end = 0.0;  ///< in the last row [deg]
+  double end = 0.0;      ///< in the last row; NaN in tension [deg]
+  bool tension = false;  ///< σ′_3 fell below zero, where no angle is: `peak` is of the other rows
   /// Of the law's critical state (M, or √3 μ_0 of grains at rest) at this test's intermediate
   /// stress: b = 0 in triaxial compression, 1 in extension, 1/2 in plane strain; otherwise that of
   /// the last row. NaN for a law without one. [deg]
@@ -43,8 +47,10 @@ struct Friction {
   double on_plane = 0.0;
 };
 
-/// Secant modulus from the start of a shear stage, of triaxial tests at constant σ_r.
+/// Secant modulus from the start of a shear stage, of triaxial tests at constant σ_r (or volume),
+/// of laws that remember their stress.
 struct Stiffness {
+  int stage = 0;       ///< with the largest change of q
   double E50 = 0.0;    ///< Δq/Δε_a where half of the largest change of q is reached [Pa]
   double eps_a = 0.0;  ///< Δε_a there [-]
 };
@@ -52,7 +58,7 @@ struct Stiffness {
 struct SecantShear {
   int stage = 0;
   double gamma = 0.0;  ///< |γ| since the start of the stage (triaxial: ε_a − ε_r, logarithmic) [-]
-  double G = 0.0;  ///< Δτ/Δγ (triaxial: Δq/2 over γ); NaN if the stage does not come there [Pa]
+  double G = 0.0;  ///< Δτ/Δγ (triaxial: Δq/2 over γ); NaN beyond the stage's own strains [Pa]
 };
 
 /// One way in compression: oedometer (x = σ′_a) or isotropic (x = p′).
@@ -64,8 +70,10 @@ struct CompressionBranch {
   /// −Δe/Δlog₁₀ x: of virgin compression over its last doubling of x, otherwise over the branch;
   /// NaN for a law without specific volume.
   double C = 0.0;
-  double K0 = 0.0;   ///< σ′_r/σ′_a at its end [-]
-  double OCR = 1.0;  ///< the largest x so far over x at its end [-]
+  double K0 = 0.0;  ///< σ′_r/σ′_a at its end [-]
+  /// The largest x that the material has carried over x at the branch's end; NaN as long as that is
+  /// not known (an oedometer whose start says ocr, of mean stresses, before it yields). [-]
+  double OCR = 1.0;
   /// Δln p′/Δln x over the same rows as C: 1 if K0 stays as it is.
   double p_over_x = 1.0;
   /// −Δe/Δlog₁₀ x over κ ln 10 (times the mean v for lines in ln v); NaN without κ, or virgin.

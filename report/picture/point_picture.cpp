@@ -167,7 +167,7 @@ void stress_path(Figure& figure, const Source& source, bool undrained) {
     for (std::size_t row = 0; row < total.size(); ++row) total[row] += p[row];
     const StageRows& sheared = source.stages()[source.shear_stages().front()];
     axes.dashed("total stress", std::span(total).subspan(sheared.start),
-                std::span(q).subspan(sheared.start), {Colour::grey, 1.2});
+                std::span(q).subspan(sheared.start), {Colour::green, 1.2});
   }
   if (source.stages().size() == 1 && source.stages().front().last_cycle == 0)
     axes.line("effective stress", p, q, {Colour::blue});

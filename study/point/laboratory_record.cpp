@@ -94,13 +94,19 @@ Json laboratory_json(const point::LaboratoryFigures& figures) {
     s["S_u_Pa"] = u->S_u;
     s["S_u_strain"] = u->strain;
     s["S_u_is"] = word(u->after);
+    s["S_u_stage"] = u->stage;
     add(s, "A_f", u->A_f);
   }
   if (const auto& f = figures.friction) {
     s["phi_peak_deg"] = f->peak;
     s["phi_peak_strain"] = f->strain;
     s["phi_peak_is"] = word(f->after);
-    s["phi_end_deg"] = f->end;
+    s["phi_peak_stage"] = f->stage;
+    add(s, "phi_end_deg", f->end);
+    if (f->tension)
+      s["phi_note"] =
+          "sigma'_3 falls below zero on the way: in tension no friction angle is defined, "
+          "and the rows there are left out";
     if (std::isfinite(f->critical)) {
       s["phi_critical_deg"] = f->critical;
       s["phi_critical_b"] = f->b;
@@ -110,6 +116,7 @@ Json laboratory_json(const point::LaboratoryFigures& figures) {
   if (const auto& e = figures.stiffness) {
     s["E50_Pa"] = e->E50;
     s["E50_eps_a"] = e->eps_a;
+    s["E50_stage"] = e->stage;
   }
   if (!figures.secants.empty()) {
     Json list = Json::array();
@@ -131,7 +138,9 @@ std::string laboratory_line(const point::LaboratoryFigures& figures) {
   if (const auto& f = figures.friction) {
     std::string text = fmt::format("φ' = {:.1f}°", f->peak);
     if (f->after != After::plateau) text += fmt::format(" ({})", word(f->after));
-    if (f->after == After::peak) text += fmt::format(", {:.1f}° at the end", f->end);
+    if (f->after == After::peak && std::isfinite(f->end))
+      text += fmt::format(", {:.1f}° at the end", f->end);
+    if (f->tension) text += ", sigma'_3 < 0 on the way";
     if (std::isfinite(f->critical)) text += fmt::format(", critical {:.1f}°", f->critical);
     parts.push_back(std::move(text));
   }
@@ -144,7 +153,10 @@ std::string laboratory_line(const point::LaboratoryFigures& figures) {
   if (const CompressionBranch* unloading = last(figures, Way::unloading)) {
     if (std::isfinite(unloading->C)) parts.push_back(fmt::format("C_s = {:.3g}", unloading->C));
     if (figures.oedometer)
-      parts.push_back(fmt::format("K0 = {:.3g} at OCR {:.3g}", unloading->K0, unloading->OCR));
+      parts.push_back(fmt::format("K0 = {:.3g} at {}", unloading->K0,
+                                  std::isfinite(unloading->OCR)
+                                      ? fmt::format("OCR {:.3g}", unloading->OCR)
+                                      : "the end of unloading"));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -370,10 +370,8 @@ io::ExitCode run_scene(const RunRequest& request) {
                         "there is no such result to resume; without --resume it is begun");
     const io::ResultFolder folder(asked.folder);
     if (!fs::exists(folder.checkpoint()) && !fs::exists(folder.previous_checkpoint())) {
-      if (!fs::exists(folder.file("input.toml")))
-        throw io::IoError(folder.checkpoint(),
-                          "there is no checkpoint to resume from; without --resume the run begins");
-      require_same_input(asked, folder.file("input.toml"));
+      if (fs::exists(folder.file("input.toml")))
+        require_same_input(asked, folder.file("input.toml"));
       const Voice voice(asked);
       if (noted_status(folder.file("summary.json")) == "done") {
         voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});

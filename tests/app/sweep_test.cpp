@@ -198,6 +198,23 @@ TEST_F(Sweep, WhatCannotBeUsedIsARowAndWhatFailsToo) {
   EXPECT_EQ(ends[1]["status"], "failed");
 }
 
+// A table as a spreadsheet writes it, and the sweep.csv that it leaves read back.
+TEST_F(Sweep, ATableOfParametersMayHaveTheSpellingsOfMeasuredOnes) {
+  write("sets.csv", "initial.ocr;law.M;test.drainage\n1,5;+,9;undrained\n2;.95;drained\n");
+  ASSERT_EQ(run("point", write("t.toml", test + "[sweep]\ntable = \"sets.csv\"\n"), "a"), 2)
+      << "+,9 is no number";
+  write("sets.csv", "initial.ocr;law.M;test.drainage\n1,5;+0,9;undrained\n2;,95;drained\n");
+  ASSERT_EQ(run("point", write("t.toml", test + "[sweep]\ntable = \"sets.csv\"\n"), "a"), 0);
+  Table rows = table_of(folder_ / "a/sweep.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0]["initial.ocr"], "1.5");
+  EXPECT_EQ(rows[0]["status"], "done");
+  EXPECT_EQ(rows[1]["law.M"], "0.95");
+  EXPECT_EQ(rows[1]["test.drainage"], "drained");
+  write("twice.csv", "law.M,law.M\n0.9,1.0\n");
+  EXPECT_EQ(run("point", write("u.toml", test + "[sweep]\ntable = \"twice.csv\"\n"), "b"), 2);
+}
+
 TEST_F(Sweep, ItsMistakes) {
   const auto says = [&](const std::string& lines, const std::string& part) {
     const std::string text = problems(lines);
@@ -209,6 +226,7 @@ TEST_F(Sweep, ItsMistakes) {
   says("grid = { \"initial.ocr\" = 4.0 }\n", "needs a list of at least one value");
   says("grid = { \"initial.ocr\" = [] }\n", "needs a list of at least one value");
   says("grid = {}\n", "must be a table of lists");
+  says("list = [{ a = 1 }, {}]\n", "with at least one key each");
   says("list = []\n", "must be a list of 1 to");
   says("list = [1, 2]\n", "must be a list of 1 to");
   says("grid = { \"sweep.table\" = [1] }\n", "a sweep cannot change [sweep] itself");

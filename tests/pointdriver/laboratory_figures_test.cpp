@@ -252,6 +252,98 @@ TEST(LaboratoryFigures, GrainsAtRestHaveTheirOwnCriticalFriction) {
   EXPECT_FALSE(f.undrained);  // p is kept, not the volume
 }
 
+TEST(LaboratoryFigures, CountWhatTheMaterialHasCarriedBefore) {
+  const Law law = cam_clay(london(true));
+  Stage load;
+  load.kind = Kind::isotropic;
+  load.drive = Drive::stress;
+  std::vector<Stage> stages;
+  for (const double to : {200e3, 50e3}) {
+    load.goal = Goal{Quantity::p, to};
+    stages.push_back(load);
+  }
+  const LaboratoryFigures f = figures_of(law, make_test(stages, 100e3, 4.0, Method::adaptive));
+  ASSERT_EQ(f.compression.size(), 2u);
+  EXPECT_NEAR(f.compression[0].OCR, 2.0, 1e-9);  // 400 kPa before
+  EXPECT_NEAR(f.compression[1].OCR, 8.0, 1e-6);
+}
+
+// From a start in extension: what is mobilised there is not the strength in compression.
+TEST(LaboratoryFigures, AreOfTheSenseInWhichAStageShears) {
+  const Law law = cam_clay(london(false));
+  PointTest test = make_test({triaxial(Condition::undrained, 0.2)}, 0.0, 0.0, Method::adaptive);
+  test.initial.p.reset();
+  test.initial.sigma_v = 40e3;
+  test.initial.K0 = 2.4;
+  test.initial.ocr_v = 6.0;
+  test.initial.K0_nc = 0.7;
+  const LaboratoryFigures f = figures_of(law, test);
+  EXPECT_EQ(f.friction->b, 0.0);
+  EXPECT_GT(f.friction->strain, 0.0);
+  EXPECT_GT(f.undrained->strain, 0.0);
+  // drained to failure, then undrained extension: its own strength, in its own stage
+  const LaboratoryFigures two = figures_of(
+      law, make_test({triaxial(Condition::drained, 0.3), triaxial(Condition::undrained, -0.5)},
+                     100e3, 1.0, Method::adaptive));
+  EXPECT_EQ(two.undrained->stage, 2);
+  EXPECT_LT(two.undrained->strain, -0.01);
+  EXPECT_NE(two.undrained->after, After::peak);
+}
+
+TEST(LaboratoryFigures, OfALaterStageInEngineeringStrainAreThoseOfItAlone) {
+  const Law law = cam_clay(london(true));
+  Stage load;
+  load.kind = Kind::isotropic;
+  load.drive = Drive::stress;
+  load.goal = Goal{Quantity::p, 300e3};
+  Stage shear = triaxial(Condition::undrained, -std::log1p(-0.2));
+  shear.goal->of_stage = true;
+  PointTest staged = make_test({load, shear}, 100e3, 1.0, Method::adaptive),
+            alone = make_test({shear}, 300e3, 1.0, Method::adaptive);
+  staged.path.measure = alone.path.measure = StrainMeasure::engineering;
+  const LaboratoryFigures a = figures_of(law, staged), b = figures_of(law, alone);
+  EXPECT_NEAR(a.undrained->strain, 0.2, 1e-9);
+  EXPECT_NEAR(a.undrained->S_u, b.undrained->S_u, integrated * b.undrained->S_u);
+  EXPECT_NEAR(a.stiffness->E50, b.stiffness->E50, 1e-5 * b.stiffness->E50);
+  EXPECT_EQ(a.stiffness->stage, 2);
+}
+
+TEST(LaboratoryFigures, NoPeakIsMadeOfUnloadingAndNoSecantOfWhatIsNotReached) {
+  const Law law = cam_clay(london(false));
+  Stage back = triaxial(Condition::undrained, 0.0);
+  back.goal = Goal{Quantity::q, 0.0};
+  const LaboratoryFigures f = figures_of(
+      law, make_test({triaxial(Condition::undrained, 2e-3), back}, 100e3, 4.0, Method::adaptive),
+      {1e-3, 0.5});
+  EXPECT_EQ(f.undrained->after, After::rising);
+  EXPECT_EQ(f.friction->after, After::rising);
+  ASSERT_EQ(f.secants.size(), 4u);
+  EXPECT_GT(f.secants[0].G, 0.0);
+  EXPECT_TRUE(std::isnan(f.secants[1].G));
+}
+
+TEST(LaboratoryFigures, TensionIsSaid) {
+  const Law law = cam_clay(london(false));
+  const LaboratoryFigures f = figures_of(
+      law, make_test({triaxial(Condition::undrained, -0.2)}, 100e3, 4.0, Method::adaptive));
+  EXPECT_TRUE(f.friction->tension);
+}
+
+// σ_r rises in extension where σ_a or p is kept.
+TEST(TriaxialStages, ARadialStressIsReachedFromItsOwnSide) {
+  const Law law = cam_clay(london(true));
+  for (const Condition condition : {Condition::constant_sigma_a, Condition::constant_p})
+    for (const double to : {85e3, 115e3}) {
+      Stage stage = triaxial(condition, 0.0);
+      stage.goal = Goal{Quantity::sigma_r, to};
+      const PointTest test = make_test({stage}, 100e3, 2.0, Method::adaptive);
+      const Curve curve = run(law, test);
+      ASSERT_EQ(curve.outcome.status, Status::completed) << to;
+      EXPECT_NEAR(column(law, test, curve, Quantity::sigma_r).back(), to, 1e-6 * to);
+      EXPECT_EQ(column(law, test, curve, Quantity::eps_a).back() > 0.0, to < 100e3);
+    }
+}
+
 TEST(PathPlaces, CountStagesAndCycles) {
   std::vector<Stage> stages{triaxial(Condition::drained, 0.01)};
   for (const Stage& half : cycles(triaxial(Condition::undrained, 0.0), Quantity::q, -1e3, 1e3, 2))
