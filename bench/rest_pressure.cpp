@@ -5,13 +5,14 @@
 /// SCENE collapse | column (16 cells wide, on a no-slip floor); LAW mu_i | mu_i_soft | cam_clay |
 /// newtonian; H cell size [m]; TRANSFER and AVERAGING as step.transfer and step.pressure_averaging.
 
+#include "mpm/output/rest_pressure.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 
 #include <fmt/core.h>
 
-#include "mpm/output/rest_pressure.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace {
