@@ -43,18 +43,17 @@ class LegRun {
         start_(start),
         rows_(rows) {
     const LegSpec& spec = leg_.spec();
-    bool rises = true, forward = true;
+    bool forward = true;
     if (spec.goal) {
       flow_.use(leg_.control(true));  // read() may need a control for D; the sign is not known yet
       const T now = reached(*spec.goal, start);
-      rises = value(now) <= spec.goal->value;
-      forward = rises != spec.goal_falls;
+      forward = value(now) <= spec.goal->value;
       if (spec.goal_is_event) {
         const double rate = spec.rows[static_cast<std::size_t>(spec.driver)].rate;
         duration_ = T(spec.strain_limit / rate);
       } else {
         duration_ =
-            (rises ? T(spec.goal->value) - now : now - T(spec.goal->value)) / spec.goal_rate;
+            (forward ? T(spec.goal->value) - now : now - T(spec.goal->value)) / spec.goal_rate;
       }
       nothing_to_do_ = value(now) == spec.goal->value;
     } else {
@@ -64,7 +63,8 @@ class LegRun {
     flow_.begin_leg(start);
     add({EventKind::branch, 0, 1.0, {}});
     add({EventKind::contact, 0, 1.0, {}});
-    if (spec.goal && spec.goal_is_event) add({EventKind::goal, 0, rises ? 1.0 : -1.0, *spec.goal});
+    if (spec.goal && spec.goal_is_event)
+      add({EventKind::goal, 0, forward ? 1.0 : -1.0, *spec.goal});
     for (std::size_t i = 0; i < spec.stops.size(); ++i) {
       const double gap = value(reached(spec.stops[i], start)) - spec.stops[i].value;
       add({EventKind::stop, static_cast<int>(i), gap < 0.0 ? 1.0 : (gap > 0.0 ? -1.0 : 0.0),

@@ -31,8 +31,9 @@ Leg::Leg(LegSpec spec) : spec_(std::move(spec)) {
   } else {
     require_positive(spec_.duration, "duration", "s");
   }
-  control_[0] = prepared(spec_, 1.0);
-  control_[1] = prepared(spec_, -1.0);
+  const double rising = spec_.goal_falls ? -1.0 : 1.0;  // the driver's sign towards a larger goal
+  control_[0] = prepared(spec_, rising);
+  control_[1] = prepared(spec_, -rising);
 }
 
 std::vector<Path::Place> Path::places() const {

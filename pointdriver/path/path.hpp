@@ -59,6 +59,7 @@ class Leg {
   /// Errors: InputError (Control; rates, durations and counts that are not positive).
   explicit Leg(LegSpec spec);
   const LegSpec& spec() const { return spec_; }
+  /// forward: towards a larger value of the goal.
   const Control& control(bool forward) const { return control_[forward ? 0 : 1]; }
 
  private:
