@@ -158,7 +158,9 @@ TEST(Killed, TwoRunsIntoOneFolderAreRefused) {
   const pid_t first = start(folder, "shared", false);
   for (int k = 0; k < 2000 && !fs::exists(folder / "shared/series.csv"); ++k)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ::kill(first, SIGSTOP);  // so that it cannot be done before the other has looked
   EXPECT_EQ(ended(start(folder, "shared", false)), 4);
+  ::kill(first, SIGCONT);
   EXPECT_EQ(ended(first), 0);
 }
 
