@@ -90,7 +90,7 @@ class Reader {
     if (law_.has_stress_memory) {
       all.stiffness = stiffness();
       for (const StageRows& stage : stages_)
-        if (of_triaxial_cell(leg(stage)) || leg(stage).kind == Kind::simple_shear)
+        if (leg(stage).kind == Kind::triaxial || leg(stage).kind == Kind::simple_shear)
           secants(stage, secants_at, all.secants);
     }
     double largest = carried_before();
@@ -258,8 +258,8 @@ class Reader {
     return nan;
   }
 
-  /// The stage driven again up to each goal in turn: the row in which it begins, and one for each
-  /// goal, as far as it comes.
+  /// The stage driven again up to each goal in turn, quantities that rise with the driver's (q,
+  /// ε_q, γ): the row in which it begins, and one for each goal, as far as it comes.
   Curve located(const StageRows& stage, const std::vector<Goal>& goals) const {
     PointTest again = test_;
     again.path.legs.clear();
@@ -271,6 +271,7 @@ class Reader {
     for (const Goal& goal : goals) {
       LegSpec spec = leg(stage);
       spec.goal = goal;
+      spec.goal_falls = false;  // the stage's own may fall: σ_r at constant p
       spec.goal_is_event = true;
       spec.points = 1;
       spec.stops.clear();

@@ -105,6 +105,24 @@ TEST(LaboratoryFigures, ElasticModuliWhateverTheRows) {
     }
 }
 
+// At constant p′ the elastic G is constant, whichever quantity ends the stage: compression lowers
+// σ_r and raises q.
+TEST(LaboratoryFigures, SecantModulusAtConstantMeanStress) {
+  const exact::CamClay c = london(true);
+  const Law law = cam_clay(c);
+  for (const Goal& to : {Goal{Quantity::sigma_r, 85e3}, Goal{Quantity::sigma_r, 115e3},
+                         Goal{Quantity::q, 45e3}, Goal{Quantity::q, -45e3}}) {
+    Stage stage = triaxial(Condition::constant_p, 0.0);
+    stage.goal = to;
+    const PointTest test = make_test({stage}, 100e3, 4.0, Method::adaptive);
+    const double v = start_value(*law.info, law.theta, test, Quantity::v);
+    const double G = c.alpha() * v * 100e3 / c.kappa;
+    const LaboratoryFigures f = figures_of(law, test, {1e-4, 1e-2});
+    ASSERT_EQ(f.secants.size(), 2u);
+    for (const SecantShear& s : f.secants) EXPECT_NEAR(s.G, G, integrated * G) << to.value;
+  }
+}
+
 TEST(LaboratoryFigures, SecantModulusOfYieldingClayInBothDirections) {
   const exact::CamClay c = london(false);
   const Law law = cam_clay(c);
