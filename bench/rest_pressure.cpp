@@ -56,7 +56,7 @@ int run(const std::vector<std::string>& arguments) {
   run_until(simulation, end);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begun;
   const SeriesRow row = simulation.diagnostics();
-  const RestPressure rest = simulation.rest_pressure();
+  const RestPressure rest = simulation.rest_pressure(Stress::points);
   const Simulation::Snapshot points = simulation.snapshot();
   std::vector<double> x = points.x_m;
   std::sort(x.begin(), x.end());

@@ -24,15 +24,16 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 6> listed_ke
     {"step.courant", "courants"},
     {"step.dt", "dts"}};
 
-/// [chart.vary]: "step.sleep_speed" = [0.0, 0.003]. Whether the scene has such a key turns out when
-/// it is read.
+/// [chart.vary]: "step.pressure_averaging" = [0.0, 50.0]. Whether the scene has such a key turns
+/// out when it is read.
 std::vector<VariedKey> read_varied(TomlReader& chart) {
   std::vector<VariedKey> varied;
   chart.expect("vary");
   if (!chart.has("vary")) return varied;
   const toml::table* table = chart.get("vary")->as_table();
   if (table == nullptr) {
-    chart.report("vary", "chart.vary must be a table, as in { \"step.sleep_speed\" = [0, 0.003] }");
+    chart.report("vary",
+                 "chart.vary must be a table, as in { \"step.pressure_averaging\" = [0, 50] }");
     return varied;
   }
   chart.table("vary").expect_any();

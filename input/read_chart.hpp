@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 3> exact_flow_names{"couette", "inclined_
 
 /// A key of the scene that a sweep varies, and its values as TOML.
 struct VariedKey {
-  std::string key;                  ///< "step.sleep_speed"
+  std::string key;                  ///< "step.pressure_averaging"
   std::vector<std::string> values;  ///< "0.0", "0.003"
 };
 

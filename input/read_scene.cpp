@@ -262,9 +262,13 @@ void step_keys(Keys& keys, mpm::Scene& scene) {
   keys.number({"pressure_averaging", "-",
                "of neighbouring points, per unit of shear strain; 0 for none", not_negative},
               scene.pressure_averaging);
-  keys.number({"sleep_speed", "m/s", "blocks whose points are slower come to sleep; 0: none does",
-               not_negative},
-              scene.sleep_speed);
+  if (table != nullptr && table->has("sleep_speed")) {
+    table->expect("sleep_speed");
+    table->report(
+        "sleep_speed",
+        "sleep_speed is no more: blocks that slept kept the stress of the moment when they "
+        "fell asleep, 5 % of p off; leave the key out");
+  }
   keys.choice({"storage", "-", "of points between steps"}, mpm::storage_names, scene.storage);
   keys.choice({"viscosity", "-", "how viscous stress acts"}, mpm::viscosity_names, scene.viscosity);
   keys.number(Key{"viscosity_tolerance", "-",
@@ -296,6 +300,11 @@ void output_keys(Keys& keys, SceneFile& file) {
        "for none",
        not_negative},
       file.checkpoint_interval);
+  keys.choice(
+      {"stress", "-",
+       "of frames and final.svg: averaged over a point's neighbourhood, as the grid sees it, "
+       "or the points' own, with noise that no force shows"},
+      mpm::stress_names, file.stress);
   keys.choice({"colour", "-", "of final.svg"}, picture_field_names, file.colour);
 }
 

@@ -5,6 +5,7 @@
 #include "input/input_file.hpp"
 #include "input/keys.hpp"
 #include "mpm/scene/scene.hpp"
+#include "mpm/step/simulation.hpp"
 
 namespace repose::input {
 
@@ -14,6 +15,7 @@ constexpr std::array<std::string_view, 2> picture_field_names{"mises", "density"
 
 struct SceneFile {
   mpm::Scene scene;
+  mpm::Stress stress = mpm::Stress::averaged;  ///< of frames and final.svg
   PictureField colour = PictureField::mises;
   double checkpoint_interval = 60.0;  ///< wall-clock time between checkpoints, 0 for none [s]
   std::vector<std::string> notes;     ///< what was made of the input that the user may not expect

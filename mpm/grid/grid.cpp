@@ -94,7 +94,7 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
       if (points.id[k] >= 0) ++per_block[keys[b][k] / nodes];
   }
 
-  const std::vector<PointBlockOf<dim>> before = std::exchange(point_blocks, {});
+  point_blocks.clear();
   for (std::size_t block = 0; block < per_block.size(); ++block) {
     point_table_[block] = -1;
     if (per_block[block] == 0) continue;
@@ -102,10 +102,6 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
     PointBlockOf<dim>& fresh = point_blocks.emplace_back();
     fresh.at = block_at(block);
     fresh.range.resize(bodies.size());
-  }
-  for (const PointBlockOf<dim>& old : before) {
-    const std::int32_t now = point_table_[table_index(old.at)];
-    if (now >= 0) point_blocks[static_cast<std::size_t>(now)].rest = old.rest;
   }
 
   const auto cell_slot = [&](std::uint32_t key) {

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "mpm/grid/points.hpp"
-#include "mpm/grid/rest.hpp"
 
 namespace repose::mpm {
 
@@ -108,7 +107,6 @@ struct PointBlockOf {
   std::array<std::int32_t, Shape<dim>::around>
       node_block{};              ///< the node blocks around, row by row
   std::vector<SlotRange> range;  ///< per body
-  Rest rest;
 
   std::size_t points() const {
     std::size_t n = 0;
@@ -129,11 +127,7 @@ struct alignas(64) NodeBlockOf {
   std::array<Nodes, Shape<dim>::axes> v{};  ///< velocity after forces, then after walls [m/s]
   /// Mass average of what the tiles' last channel carries, if it carries anything
   Nodes extra{};
-  /// What points awake put there; only where blocks of both kinds are around [kg/m], [kg]
-  Nodes awake_mass{};
   std::array<int, Shape<dim>::axes> at{};  ///< block coordinates
-  bool asleep = false;   ///< no point awake is near: nothing reads it and it holds zeros
-  bool borders = false;  ///< of the blocks of points around, some are awake and some asleep
   /// The point blocks around; −1 where there is none
   std::array<std::int32_t, Shape<dim>::around> point_block{};
 };
@@ -171,8 +165,8 @@ class GridOf {
   static int first_y(int by) { return first(1, by); }
 
   /// Sorts the points of all bodies by block and cell (stable, so the result depends on positions
-  /// and the former order only), and brings the blocks to life around them. A block of points keeps
-  /// what it knows of its rest. Works on the threads of the arena that it is called in.
+  /// and the former order only), and brings the blocks to life around them. Works on the threads of
+  /// the arena that it is called in.
   void sort(std::vector<PointsOf<dim>>& bodies);
 
   /// Takes over point blocks as sort() left them (from a checkpoint).

@@ -13,7 +13,7 @@
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 4;
+constexpr std::int64_t format_version = 5;
 
 /// An open HDF5 object, closed by its own function.
 class Handle {
@@ -147,19 +147,6 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
     }
   }
   write(file, "blocks", blocks);
-  // the rest of every block; and of those that sleep beside points awake, the push
-  std::vector<double> rests;
-  std::vector<double> pushes;
-  for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
-    const Rest& rest = pb.rest;
-    rests.insert(
-        rests.end(),
-        {rest.at_rest, rest.asleep ? 1.0 : 0.0, static_cast<double>(rest.count), rest.signals.speed,
-         rest.signals.signal, rest.signals.viscous_rate, rest.push.empty() ? 0.0 : 1.0});
-    pushes.insert(pushes.end(), rest.push.begin(), rest.push.end());
-  }
-  write(file, "rests", rests);
-  write(file, "pushes", pushes);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const PointsOf<dim>& points = s.bodies[b];
     write(file, fmt::format("body{}_id", b), points.id);
@@ -220,24 +207,7 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
         restored[k].range.push_back({static_cast<std::size_t>(row[dim + 2 * b]),
                                      static_cast<std::size_t>(row[dim + 2 * b + 1])});
     }
-    const std::vector<double> rests = read<double>(file, "rests");
-    const std::vector<double> pushes = read<double>(file, "pushes");
-    auto push = pushes.begin();
-    for (std::size_t k = 0; k < restored.size(); ++k) {
-      const auto at = [&](std::size_t i) { return rests.at(7 * k + i); };
-      Rest& rest = restored[k].rest;
-      rest.at_rest = at(0);
-      rest.asleep = at(1) != 0.0;
-      rest.count = static_cast<std::size_t>(at(2));
-      rest.signals = {at(3), at(4), at(5)};
-      if (at(6) == 0.0) continue;
-      constexpr std::ptrdiff_t of_block = dim * Shape<dim>::tile_nodes;
-      if (pushes.end() - push < of_block) reject("its sleeping blocks are incomplete");
-      rest.push.assign(push, push + of_block);
-      push += of_block;
-    }
     s.grid.restore(std::move(restored));
-    s.mark_sleepers();
   } catch (const io::IoError&) {
     throw;
   } catch (const std::exception& e) {

@@ -158,14 +158,10 @@ Simulation::Counters Simulation::Impl<dim>::counters() const {
                  static_cast<double>(s.grid.node_blocks.size()) * sizeof(NodeBlockOf<dim>);
   for (const PointsOf<dim>& points : s.bodies)
     bytes += static_cast<double>(points.slots() * points.bytes_per_slot());
-  std::size_t asleep = 0;
-  for (const PointBlockOf<dim>& pb : s.grid.point_blocks)
-    asleep += pb.rest.asleep ? pb.points() : 0;
   return {.dt_min_s = s.steps > 0 ? s.dt_min : 0.0,
           .dt_max_s = s.dt_max,
           .wall_corrections = s.wall_corrections,
           .sorts = s.sorts,
-          .points_asleep = static_cast<std::int64_t>(asleep),
           .newton_iterations = s.newton_iterations,
           .cg_iterations = s.cg_iterations,
           .memory_MB = bytes / 1e6,
@@ -222,11 +218,13 @@ Simulation::Profile Simulation::profile() const {
   return p;
 }
 
-RestPressure Simulation::rest_pressure() const {
+RestPressure Simulation::rest_pressure(Stress of) const {
   if (!plane_) throw std::logic_error("rest_pressure() is for plane strain");
   const Impl<2>& s = *plane_;
   const double h = s.grid.h();
-  return mpm::rest_pressure(s.bodies, h, h * s.grid.nx(), -s.gravity[1], 2.0 * h, 0.25);
+  std::vector<double> rho_0;
+  for (const PointSet& points : s.bodies) rho_0.push_back(points.rho_0);
+  return mpm::rest_pressure(snapshot(of), rho_0, h, h * s.grid.nx(), -s.gravity[1], 2.0 * h, 0.25);
 }
 
 }  // namespace repose::mpm

@@ -6,8 +6,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "mpm/grid/points.hpp"
-
 namespace repose::mpm {
 namespace {
 
@@ -29,18 +27,18 @@ double spline(double xi) {
 /// Samples in strips of width h, so that all within 2h in x are in five strips.
 class Strips {
  public:
-  Strips(const std::vector<PointSet>& bodies, double h, double width)
+  Strips(const Simulation::Snapshot& points, const std::vector<double>& rho_0, double h,
+         double width)
       : h_(h),
         width_(width),
         strip_(static_cast<std::size_t>(std::max(1.0, std::ceil(width / h)))) {
-    for (const PointSet& points : bodies)
-      for (std::size_t s = 0; s < points.slots(); ++s) {
-        if (points.id[s] < 0) continue;
-        const double m = points[MASS][s];
-        strip_[index(points[X][s])].push_back(
-            {points[X][s], points[Y][s], m, std::sqrt(m / points[RHO][s]), m / points.rho_0,
-             -(points[SXX][s] + points[SYY][s] + points[SZZ][s]) / 3.0, -points[SYY][s]});
-      }
+    for (std::size_t p = 0; p < points.x_m.size(); ++p) {
+      const double m = points.mass[p];
+      strip_[index(points.x_m[p])].push_back({points.x_m[p], points.y_m[p], m,
+                                              std::sqrt(m / points.density[p]),
+                                              m / rho_0[static_cast<std::size_t>(points.body[p])],
+                                              points.pressure_Pa[p], -points.syy[p]});
+    }
   }
 
   /// Calls f(sample, N(x − x_q)/h) for the samples within 2h in x, a wall's images included.
@@ -136,9 +134,9 @@ struct Mean {
 
 }  // namespace
 
-RestPressure rest_pressure(const std::vector<PointSet>& bodies, double h, double width, double g,
-                           double min_depth, double min_share) {
-  const Strips strips(bodies, h, width);
+RestPressure rest_pressure(const Simulation::Snapshot& points, const std::vector<double>& rho_0,
+                           double h, double width, double g, double min_depth, double min_share) {
+  const Strips strips(points, rho_0, h, width);
   double deepest = 0.0;
   RestPressure result;
   strips.each([&](const Sample& p) {
@@ -157,7 +155,8 @@ RestPressure rest_pressure(const std::vector<PointSet>& bodies, double h, double
     judged.push_back({&p, g * over.mass});
     result.largest_overburden = std::max(result.largest_overburden, g * over.mass);
   });
-  Squares pressure, vertical, pressure_of_largest, vertical_of_largest;
+  Squares floor_pressure, floor_vertical, pressure, vertical, pressure_of_largest,
+      vertical_of_largest;
   Mean ratio, vertical_ratio, floor_ratio, floor_vertical_ratio;
   for (const auto& [p, overburden] : judged) {
     const auto [p_mean, v_mean] = local_mean(strips, p->x, p->y, h);
@@ -168,6 +167,8 @@ RestPressure rest_pressure(const std::vector<PointSet>& bodies, double h, double
     ratio.add(p->pressure / overburden);
     vertical_ratio.add(p->vertical / overburden);
     if (p->y < 0.5 * h) {
+      floor_pressure.add(p->pressure, p_mean, overburden, overburden);
+      floor_vertical.add(p->vertical, v_mean, overburden, overburden);
       floor_ratio.add(p->pressure / overburden);
       floor_vertical_ratio.add(p->vertical / overburden);
     }
@@ -176,6 +177,8 @@ RestPressure rest_pressure(const std::vector<PointSet>& bodies, double h, double
   result.points = static_cast<std::int64_t>(judged.size());
   result.pressure = pressure.root(n);
   result.vertical = vertical.root(n);
+  result.floor_pressure = floor_pressure.root(floor_ratio.count);
+  result.floor_vertical = floor_vertical.root(floor_ratio.count);
   result.pressure_of_largest = pressure_of_largest.root(n);
   result.vertical_of_largest = vertical_of_largest.root(n);
   result.mean_ratio = ratio.value();

@@ -19,11 +19,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace repose::mpm {
+#include "mpm/step/simulation.hpp"
 
-template <int dim>
-struct PointsOf;
-using PointSet = PointsOf<2>;
+namespace repose::mpm {
 
 /// Root mean squares over the points judged.
 struct Deviation {
@@ -31,10 +29,12 @@ struct Deviation {
 };
 
 struct RestPressure {
-  std::int64_t points = 0;           ///< judged: deeper than min_depth, where the deposit is thick
-  double largest_overburden = 0.0;   ///< [Pa]
-  Deviation pressure;                ///< p = −tr σ/3, relative to the overburden of the point
-  Deviation vertical;                ///< −σ_yy, likewise
+  std::int64_t points = 0;          ///< judged: deeper than min_depth, where the deposit is thick
+  double largest_overburden = 0.0;  ///< [Pa]
+  Deviation pressure;               ///< p = −tr σ/3, relative to the overburden of the point
+  Deviation vertical;               ///< −σ_yy, likewise
+  /// The same two over the points of the row of half cells on the floor; NaN if there is none
+  Deviation floor_pressure, floor_vertical;
   Deviation pressure_of_largest;     ///< the same of p, all relative to the largest overburden
   Deviation vertical_of_largest;     ///< the same of −σ_yy
   double mean_ratio = 0.0;           ///< mean of p/P
@@ -44,9 +44,9 @@ struct RestPressure {
 };
 
 /// Judges the points that lie deeper than `min_depth` [m of solid] below the surface, and where the
-/// deposit is at least `min_share` of its greatest depth thick (away from the toe). `h`: cell size
-/// [m], `width`: of the box [m], `g`: gravity along −y [m/s²].
-RestPressure rest_pressure(const std::vector<PointSet>& bodies, double h, double width, double g,
-                           double min_depth, double min_share);
+/// deposit is at least `min_share` of its greatest depth thick (away from the toe). `rho_0`: of
+/// every body [kg/m³], `h`: cell size [m], `width`: of the box [m], `g`: gravity along −y [m/s²].
+RestPressure rest_pressure(const Simulation::Snapshot& points, const std::vector<double>& rho_0,
+                           double h, double width, double g, double min_depth, double min_share);
 
 }  // namespace repose::mpm

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mpm/output/averaged_stress.hpp"
 #include "mpm/step/simulation_impl.hpp"
 
 namespace repose::mpm {
@@ -59,6 +60,12 @@ Simulation::Snapshot Simulation::Impl<dim>::snapshot() const {
     shot.body.push_back(static_cast<std::int32_t>(place.body));
   }
   return shot;
+}
+
+Simulation::Snapshot Simulation::snapshot(Stress of) const {
+  Snapshot points = visit([](const auto& s) { return s.snapshot(); });
+  if (of == Stress::averaged) average_stress(points, scene().h);
+  return points;
 }
 
 Simulation::Snapshot Simulation::Snapshot::slice(double from, double to) const {

@@ -131,10 +131,6 @@ struct Scene {
   /// (root mean square by mass); implicit_viscosity.hpp says what it bounds.
   double viscosity_tolerance = 1e-3;
 
-  /// Points slower than this for √(h/g) are at rest, and blocks of them sleep (sleep.hpp) [m/s]; 0:
-  /// none does.
-  double sleep_speed = 0.0;
-
   Storage storage = Storage::double_precision;
 
   double courant = 0.8;      ///< Δt = courant · h/(c + |v|), if dt is absent; see step_size.hpp

@@ -87,7 +87,6 @@ void check_numbers(const Scene& scene) {
         "points_per_cell = " + std::to_string(scene.points_per_cell) +
             (space ? " must be a cube number up to 64 in three dimensions: 1, 8, 27, 64"
                    : " must be a square number from 1 to 100: 1, 4, 9, 16, ..."));
-  require(scene.sleep_speed, not_negative, "step.sleep_speed", "sleep_speed");
   require(scene.order, {1.0, max_order, false, false}, "step.order", "order");
   require(scene.pressure_averaging, not_negative, "step.pressure_averaging", "pressure_averaging");
   require(scene.viscosity_tolerance, {0.0, 0.1, true, false}, "step.viscosity_tolerance",
@@ -346,22 +345,6 @@ void check_relaxation(const Scene& scene) {
                      "without gravity, \"relaxed\" needs step.relaxation_time [s]");
 }
 
-/// A sleeper has nothing to hand on but mass and force, and neighbours only in its own tile.
-void check_sleep(const Scene& scene) {
-  if (scene.sleep_speed == 0.0) return;
-  const auto refuse = [](const std::string& what) {
-    throw InputError("step.sleep_speed", "sleep_speed > 0 does not go with " + what);
-  };
-  if (scene.gravity == 0.0) refuse("scene.gravity = 0: nothing comes to rest");
-  if (scene.viscosity == Viscosity::implicit_solve) refuse("step.viscosity = \"implicit\"");
-  if (scene.pressure_averaging > 0.0) refuse("step.pressure_averaging");
-  if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
-    refuse("step.transfer = \"" + std::string(name_of(scene.transfer)) + "\"");
-  for (const Wall& wall : {scene.floor, scene.left, scene.right, scene.top})
-    if (wall.kind == Wall::Kind::periodic || wall.speed != 0.0)
-      refuse("periodic edges or walls that move");
-}
-
 /// What plane strain alone has (docs/three_dimensions.md).
 void check_space(const Scene& scene) {
   if (scene.dimensions() == 2) return;
@@ -433,7 +416,6 @@ void validate(const Scene& scene) {
   check_space(scene);
   check_extension(scene);
   check_viscosity(scene);
-  check_sleep(scene);
   check_relaxation(scene);
 }
 

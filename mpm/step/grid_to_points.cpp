@@ -51,11 +51,6 @@ void Simulation::Impl<dim>::grid_to_points(double dt) {
     transfer_to_tile(k, carries_next);
   };
   for_each_block(arena, grid.point_blocks.size(), [&](std::size_t k) {
-    if (grid.point_blocks[k].rest.asleep) {
-      block_sums_[k].transferred = true;
-      block_sums_[k].stirred = is_stirred(k, dt);
-      return;
-    }
     choose<dim>(scene, keep.affine, averages(),
                 [&](auto kernel, auto, auto averages) { advance(kernel, averages, k); });
   });

@@ -52,7 +52,7 @@ void Simulation::Impl<dim>::close_ledger() {
     viscous_step_excess = std::max(viscous_step_excess, last_dt * now.viscous_rate);
   }
   for (const PointBlockOf<dim>& pb : grid.point_blocks)
-    if (!pb.rest.asleep) point_steps += static_cast<std::int64_t>(pb.points());
+    point_steps += static_cast<std::int64_t>(pb.points());
 
   const char* cause = "the integration diverges (solver); try a smaller courant";
   if (scene.dt && fixed_step_excess > safe_courant(scene.kernel, dim))

@@ -175,9 +175,6 @@ std::int64_t Simulation::live_cells() const {
 double Simulation::next_dt() const {
   return visit([](const auto& s) { return s.choose_step(HUGE_VAL); });
 }
-Simulation::Snapshot Simulation::snapshot() const {
-  return visit([](const auto& s) { return s.snapshot(); });
-}
 std::vector<std::string> Simulation::warnings() const {
   return visit([](const auto& s) { return s.warnings(); });
 }

@@ -16,6 +16,14 @@ namespace repose::mpm {
 struct Deposit;       // output/deposit.hpp
 struct RestPressure;  // output/rest_pressure.hpp
 
+/// Whose stress is looked at.
+enum class Stress {
+  averaged,  ///< of a point's neighbourhood, as the grid sees it: output/averaged_stress.hpp
+  points,    ///< the point's own, which the law goes on from: with noise that no force shows
+};
+/// Their names in scene files, in the same order.
+constexpr std::array<std::string_view, 2> stress_names{"averaged", "points"};
+
 /// One row of series.csv, in plane strain per metre of depth; in space everything that is named
 /// _per_m is a total in J or kg.
 struct SeriesRow {
@@ -73,7 +81,7 @@ class Simulation {
   /// Pressure against overburden, for a deposit in the plane at rest (gravity along −y): points
   /// deeper than 2h below the surface, where the deposit has at least a quarter of its greatest
   /// depth.
-  RestPressure rest_pressure() const;
+  RestPressure rest_pressure(Stress of = Stress::averaged) const;
 
   /// All points in a fixed order (their order of creation), for frames and pictures.
   struct Snapshot {
@@ -86,7 +94,7 @@ class Simulation {
     /// In space, the points between two heights z [m].
     Snapshot slice(double from, double to) const;
   };
-  Snapshot snapshot() const;
+  Snapshot snapshot(Stress of = Stress::points) const;
 
   /// Things a user should know: a fixed step beyond a stability limit, wall corrections, ...
   std::vector<std::string> warnings() const;
@@ -95,7 +103,6 @@ class Simulation {
     double dt_min_s, dt_max_s;
     std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
     std::int64_t sorts;
-    std::int64_t points_asleep;                     ///< now (Scene::sleep_speed)
     std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
     double memory_MB;                               ///< of points and grid
     int threads;

@@ -35,8 +35,6 @@ class Simulation::Impl {
   void extend_velocity();           ///< XPIC, FMPM beyond first order (extended_pic.cpp)
   void grid_to_points(double dt);   ///< G2P, move, update stress, P2G of the next step
   void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
-  void mark_sleepers();             ///< tells the blocks of nodes which points around them sleep
-  void settle();                    ///< blocks at rest fall asleep, stirred ones wake (sleep.hpp)
 
   SeriesRow diagnostics();
   Deposit deposit() const;
@@ -84,7 +82,7 @@ class Simulation::Impl {
   double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
   double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
   double first_dt = 0.0;
-  Signals signals;          ///< of the points awake
+  Signals signals;          ///< of the points
   double node_share = 1.0;  ///< largest signal of a node over that of a point (step_size.hpp)
   Ledger ledger;
   double highest_energy = 0.0;  ///< what kinetic energy can never exceed [J/m]
@@ -99,7 +97,6 @@ class Simulation::Impl {
     std::int64_t corrections = 0;
     bool outflow = false;
     bool transferred = false;  ///< its tile holds the points as they are
-    bool stirred = false;      ///< asleep, and something happens at its border
     std::string failure;
   };
   template <class Kernel, bool affine, Extra extra>
@@ -143,14 +140,6 @@ class Simulation::Impl {
   }
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
-  /// Whether blocks at rest fall asleep, and after how long [s].
-  bool sleeps() const;
-  double time_to_sleep() const;
-  void put_to_sleep(std::size_t block);
-  void wake(PointBlockOf<dim>& block);
-  void wake_the_crowded();  ///< sleepers into which points have come
-  void sum_awake_mass(NodeBlockOf<dim>& nb) const;
-  bool is_stirred(std::size_t block, double dt);
   void remove_outflow();
   double initial_power() const;
   /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].

@@ -35,7 +35,6 @@ void Simulation::Impl<dim>::step(double stop_at) {
   time = tiles_time;
   ++steps;
   close_ledger();
-  settle();
 }
 
 template <int dim>
@@ -50,8 +49,6 @@ void Simulation::Impl<dim>::sort_if_needed() {
   }
   remove_outflow();
   arena.execute([&] { grid.sort(bodies); });
-  wake_the_crowded();
-  mark_sleepers();
   tiles_are_current = false;
   drift = 0.0;
   must_sort = false;
@@ -98,14 +95,6 @@ void Simulation::Impl<dim>::update_grid(double dt) {
   for_each_block(arena, grid.node_blocks.size(), [&](std::size_t k) {
     using C = Channels<dim>;
     NodeBlockOf<dim>& nb = grid.node_blocks[k];
-    if (nb.asleep) {
-      for (auto* field : {&nb.mass, &nb.mirrored_mass, &nb.extra}) field->fill(0.0);
-      for (std::size_t i = 0; i < dim; ++i)
-        for (auto* field : {&nb.u[i], &nb.v[i]}) field->fill(0.0);
-      node_sums_[k] = {};
-      return;
-    }
-    if (nb.borders) sum_awake_mass(nb);
     alignas(64) NodeTotals<C::count, dim> sum{};
     std::array<std::size_t, C::count> all{};
     std::iota(all.begin(), all.end(), std::size_t{0});

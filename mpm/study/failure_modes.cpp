@@ -126,7 +126,7 @@ double bulge(const Discretisation& d, double nu) {
 RestPressure rest_pressure_after(const Scene& scene) {
   Simulation simulation(scene, 1);
   while (simulation.time() < scene.end_time) simulation.step(scene.end_time);
-  return simulation.rest_pressure();
+  return simulation.rest_pressure(Stress::points);
 }
 
 }  // namespace repose::mpm

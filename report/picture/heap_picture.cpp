@@ -115,7 +115,7 @@ void write_heap_picture(const std::filesystem::path& path, const HeapPicture& pi
 bool draw_final_picture(const input::SceneFile& file, const mpm::Simulation& simulation,
                         const std::filesystem::path& path) {
   const mpm::Scene& scene = file.scene;
-  mpm::Simulation::Snapshot shot = simulation.snapshot();
+  mpm::Simulation::Snapshot shot = simulation.snapshot(file.stress);
   std::string title = fmt::format("{} at {:.4g} s", scene.name, simulation.time());
   if (scene.dimensions() == 3) {
     // the cells along z = 0, or the middle of the box where that is no plane of symmetry

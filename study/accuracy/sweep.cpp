@@ -157,7 +157,7 @@ void add_runs(const input::SceneFile& base, const input::Sweep& sweep, bool with
     for (const double h : descending(sweep.reference)) add(base.scene, h);
 }
 
-/// "_sleep_speed0.003" of "sleep_speed 0.003": what a folder's name may hold.
+/// "_pressure_averaging50" of "pressure_averaging 50": what a folder's name may hold.
 std::string file_suffix(const std::string& variation) {
   if (variation.empty()) return "";
   std::string suffix = "_";

@@ -38,7 +38,7 @@ struct SweepRun {
   std::vector<double> x_m, depth_m;  ///< profile.csv
 
   const mpm::Scene& scene() const { return file.scene; }
-  /// "sleep_speed 0.003"; "" where nothing but what has a list of its own is varied.
+  /// "pressure_averaging 50"; "" where nothing but what has a list of its own is varied.
   std::string variation() const;
   /// "" as long as there is no result.
   const std::string& status() const { return summary.status; }

@@ -213,7 +213,6 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["peak_memory_MB"] = spent.peak_memory_MB;
   s["wall_corrections"] = counters.wall_corrections;
   s["sorts"] = counters.sorts;
-  if (simulation.scene().sleep_speed > 0.0) s["points_asleep"] = counters.points_asleep;
   if (simulation.scene().viscosity == mpm::Viscosity::implicit_solve) {
     s["newton_iterations"] = counters.newton_iterations;
     s["cg_iterations"] = counters.cg_iterations;

@@ -244,7 +244,7 @@ void Run::write_due() {
 }
 
 void Run::write_frame() {
-  const mpm::Simulation::Snapshot shot = simulation_.snapshot();
+  const mpm::Simulation::Snapshot shot = simulation_.snapshot(request_.file.stress);
   if (!shot.x_m.empty()) frames_->write(shot.view(simulation_.time()));
 }
 

@@ -45,10 +45,10 @@ class Collapses {
     for (const Case& c : {Case{"flat", 6e-5, 0.0}, Case{"tilted", 3e-5, 35.0}}) {
       if (input_.quick && c.tilt > 0.0) continue;
       const double dt = input_.quick ? 4.0 * c.dt : c.dt;
-      mpm::Scene scene = paper_scene(
-          "flat_mcc", {h_, fmt::format("scene.tilt_deg={:.1f}", c.tilt),
-                       fmt::format("step.dt={}", dt), "step.transfer=apic", "step.sleep_speed=0",
-                       fmt::format("grid.points_per_cell={}", input_.quick ? 4 : 16)});
+      mpm::Scene scene =
+          paper_scene("flat_mcc", {h_, fmt::format("scene.tilt_deg={:.1f}", c.tilt),
+                                   fmt::format("step.dt={}", dt), "step.transfer=apic",
+                                   fmt::format("grid.points_per_cell={}", input_.quick ? 4 : 16)});
       raise_top_to_cells(scene);
       scene.end_time = input_.quick ? 0.4 : c.tilt > 0.0 ? 0.9 : 1.2;
       maps_.h = scene.h;

@@ -133,10 +133,10 @@ TEST_F(ChartSetTest, EveryChartInSmallAndNothingTwice) {
     EXPECT_EQ(finite_numbers(errors, "energy_error"), errors.size()) << part.name;
     EXPECT_GT(errors.size(), 1u) << part.name;
   }
-  const Table sleep = table_of(base_ / "all/mu_i_sleep/errors.csv");
-  ASSERT_EQ(sleep.size(), 6u);
-  EXPECT_EQ(sleep.front().at("step.sleep_speed"), "0.0");
-  EXPECT_EQ(sleep.back().at("step.sleep_speed"), "0.003");
+  const Table averaging = table_of(base_ / "all/mu_i_averaging/errors.csv");
+  ASSERT_EQ(averaging.size(), 6u);
+  EXPECT_EQ(averaging.front().at("step.pressure_averaging"), "0.0");
+  EXPECT_EQ(averaging.back().at("step.pressure_averaging"), "50.0");
 
   ASSERT_EQ(run({"all", "--quick", "--resume"}, "all"), 0) << error_;
   const io::Json second = summary("all");
@@ -154,7 +154,7 @@ TEST_F(ChartSetTest, AChartThatFailsIsToldAndTheOthersAreMade) {
       "cells = [0.025]\ndts = [5e-3]\nset = [\"scene.end_time=0.6\"]\n"
       "[[chart]]\nname = \"works\"\nkind = \"mpm\"\ninput = \"flat_mu_i\"\ntransfers = [\"apic\"]\n"
       "cells = [0.05]\ncourants = [1.0]\nset = [\"scene.end_time=0.1\"]\n"
-      "vary = { \"step.sleep_speed\" = [0.0, 0.01], \"scene.gravity\" = [9.8, 4.9] }\n");
+      "vary = { \"step.pressure_averaging\" = [0.0, 10.0], \"scene.gravity\" = [9.8, 4.9] }\n");
   EXPECT_EQ(run({file}, "set"), 3) << "the failure of a run";
   EXPECT_EQ(summary("set")["status"], "failed");
   EXPECT_EQ(summary("set")["parts"][0]["status"], "failed");
@@ -164,7 +164,7 @@ TEST_F(ChartSetTest, AChartThatFailsIsToldAndTheOthersAreMade) {
   ASSERT_EQ(chart.size(), 4u);
   EXPECT_EQ(chart[0].at("scene.gravity"), "9.8");
   EXPECT_EQ(chart[3].at("scene.gravity"), "4.9");
-  EXPECT_EQ(chart[3].at("step.sleep_speed"), "0.01");
+  EXPECT_EQ(chart[3].at("step.pressure_averaging"), "10.0");
   EXPECT_NE(chart[0].at("kinetic_J_per_m"), chart[3].at("kinetic_J_per_m"));
   // once more: the failed one again, the other kept
   EXPECT_EQ(run({file, "--resume"}, "set"), 3);

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Clay with sleep, rows and frames: everything that is carried over.
+/// Clay with rows and frames: everything that is carried over.
 const std::string scene = R"([scene]
 name = "killed"
 end_time = 0.8
@@ -42,8 +42,6 @@ p_ref = 1.0
 rho_p = 2000.0
 [grid]
 h = 0.025
-[step]
-sleep_speed = 0.003
 [output]
 series_interval = 0.01
 frame_interval = 0.1

@@ -59,7 +59,6 @@ std::vector<std::string> scenes() {
   const auto plane = [](std::string_view body, std::string_view laws, std::string_view rest) {
     const bool sticks = rest.find("implicit") != std::string_view::npos;
     const bool still = rest.find("xpic") != std::string_view::npos ||
-                       rest.find("sleep") != std::string_view::npos ||
                        rest.find("implicit") != std::string_view::npos;
     return fmt::format(
         "[scene]\nname = \"walk\"\nend_time = 0.5\ngravity = 9.8\ntilt_deg = 3.0\n"
@@ -88,7 +87,7 @@ std::vector<std::string> scenes() {
       plane(disc + "[body.initial]\np = 20e3\nocr = 1.5\nK0 = 0.8\n", clay,
             grid + "[step]\ntransfer = \"xpic\"\norder = 3\ndt = 1e-5\n"),
       plane(box + "[body.initial]\nsigma_v = 20e3\nK0 = 0.8\nocr_v = 1.5\nK0_nc = 0.6\n", clay,
-            grid + "[step]\nsleep_speed = 0.001\n"),
+            grid + "stress = \"points\"\n"),
       plane(box + "[body.initial]\ndensity = 1310.0\n", law, grid),
       plane(box + "[body.initial]\nv = 2.1\n", clay, grid),
       plane(box + "[body.initial]\ne = 1.1\n", clay, grid),
@@ -457,8 +456,9 @@ TEST(KeyTable, EveryKeyOfChartsAndMapsIsReadAndAMistypedOneRefused) {
   const std::string chart =
       "[chart]\nkind = \"mpm\"\nevaluations = 10\nseed = 3\nquick = true\ntransfers = "
       "[\"apic\"]\nkernels = [\"cubic\"]\npoints_per_cell = [4]\ncells = [0.1]\nreference = "
-      "[0.05]\ncourants = [0.5]\ndts = [1e-4]\nexact = \"couette\"\nvary = { \"step.sleep_speed\" "
-      "= [0.0] }\n";
+      "[0.05]\ncourants = [0.5]\ndts = [1e-4]\nexact = \"couette\"\nvary = { "
+      "\"step.relaxation_time\" "
+      "= [0.01] }\n";
   const auto read = [](InputFile& file) {
     read_chart(file);
     file.throw_if_bad();

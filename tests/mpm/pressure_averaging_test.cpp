@@ -216,7 +216,7 @@ TEST(PressureAveragingTest, QuietensACollapsedHeapAndLeavesItsShape) {
   for (const bool averages : {false, true}) {
     Simulation simulation(collapse(averages ? 100.0 : 0.0), 1);
     run_until(simulation, 1.2);
-    noise[averages] = simulation.rest_pressure().pressure_of_largest.noise;
+    noise[averages] = simulation.rest_pressure(Stress::points).pressure_of_largest.noise;
     height[averages] = simulation.diagnostics().height_m;
     std::vector<double> x = simulation.snapshot().x_m;
     std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
@@ -238,7 +238,7 @@ TEST(PressureAveragingTest, ASelfWeightColumnKeepsItsPressure) {
   scene.pressure_averaging = 100.0;
   Simulation simulation(scene, 1);
   run_until(simulation, 1.2);
-  const RestPressure rest = simulation.rest_pressure();
+  const RestPressure rest = simulation.rest_pressure(Stress::points);
   EXPECT_GT(rest.points, 200);
   EXPECT_LT(rest.pressure.total, 0.01);
 }

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/mpm/point_cloud.hpp"
-
 namespace repose::mpm {
 namespace {
 
@@ -14,21 +12,25 @@ constexpr int columns = 40, rows = 30;  // 2 × 2 points per cell
 
 /// A layer from wall to wall, at rest; p(column, row, overburden) is every point's pressure.
 template <class F>
-std::vector<PointSet> layer(F&& p) {
-  PointSet points = no_points();
-  points.rho_0 = rho;
+Simulation::Snapshot layer(F&& p) {
+  Simulation::Snapshot points;
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
       const double y = (j + 0.5) * 0.5 * h;
-      add_point(points, (i + 0.5) * 0.5 * h, y, rho * 0.25 * h * h);
-      for (const Field f : {SXX, SYY, SZZ})
-        points.field[f].back() = -p(i, j, rho * g * (height - y));
+      const double pressure = p(i, j, rho * g * (height - y));
+      points.x_m.push_back((i + 0.5) * 0.5 * h);
+      points.y_m.push_back(y);
+      points.mass.push_back(rho * 0.25 * h * h);
+      points.density.push_back(rho);
+      points.pressure_Pa.push_back(pressure);
+      points.syy.push_back(-pressure);
+      points.body.push_back(0);
     }
-  return {points};
+  return points;
 }
 
-RestPressure judged(const std::vector<PointSet>& bodies) {
-  return rest_pressure(bodies, h, width, g, 2.0 * h, 0.25);
+RestPressure judged(const Simulation::Snapshot& points) {
+  return rest_pressure(points, {rho}, h, width, g, 2.0 * h, 0.25);
 }
 
 // The weight above a point of a lattice is ρ g × depth to the last bits: ½ of its own height, all
@@ -68,18 +70,25 @@ TEST(RestPressureTest, ACheckerboardIsNoise) {
 
 // What stands less than a quarter as deep as the deepest column is toe, and not judged.
 TEST(RestPressureTest, LeavesTheToeOut) {
-  std::vector<PointSet> bodies = layer([](int, int, double P) { return P; });
-  PointSet& points = bodies[0];
-  for (std::size_t s = 0; s < points.count; ++s)
-    if (points.field[X][s] > 0.5 * width && points.field[Y][s] > 0.2 * height) points.id[s] = -1;
-  const RestPressure rest = judged(bodies);
+  const Simulation::Snapshot whole = layer([](int, int, double P) { return P; });
+  Simulation::Snapshot step;
+  for (std::size_t k = 0; k < whole.x_m.size(); ++k) {
+    if (whole.x_m[k] > 0.5 * width && whole.y_m[k] > 0.2 * height) continue;
+    using Column = std::vector<double> Simulation::Snapshot::*;
+    for (const Column column : {&Simulation::Snapshot::x_m, &Simulation::Snapshot::y_m,
+                                &Simulation::Snapshot::mass, &Simulation::Snapshot::density,
+                                &Simulation::Snapshot::pressure_Pa, &Simulation::Snapshot::syy})
+      (step.*column).push_back((whole.*column)[k]);
+    step.body.push_back(0);
+  }
+  const RestPressure rest = judged(step);
   // columns within 2h of the step see some of the high side
   EXPECT_GE(rest.points, columns / 2 * (rows - 4));
   EXPECT_LE(rest.points, columns / 2 * (rows - 4) + 4 * rows);
 }
 
 TEST(RestPressureTest, NothingToJudgeIsNotANumber) {
-  const RestPressure rest = judged({no_points()});
+  const RestPressure rest = judged({});
   EXPECT_EQ(rest.points, 0);
   EXPECT_TRUE(std::isnan(rest.pressure.total));
 }

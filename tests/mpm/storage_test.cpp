@@ -133,9 +133,6 @@ TEST(Storage, GoesWithEveryPartOfTheMethod) {
   Scene averaging = scene;
   averaging.pressure_averaging = 10.0;
   compare(averaging, "averaging");
-  Scene sleeping = scene;
-  sleeping.sleep_speed = 0.5;
-  compare(sleeping, "sleeping");
   Scene viscous = scene;
   viscous.bodies[0].law = newtonian(10.0, 26000.0, 1.0, 1300.0);
   viscous.viscosity = Viscosity::implicit_solve;
