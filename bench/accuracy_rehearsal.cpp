@@ -2,16 +2,18 @@
 /// `repose run --accuracy` rehearsed on scenes that have been charted (scripts/accuracy constants):
 /// each is predicted with the constants of the others, and its runs are read, not made.
 ///   bench_accuracy_rehearsal results/accuracy
-/// Per quantity and target: of how many answers, how many are within 1.5 times the target, and how
+/// Prints the rows of study/accuracy/rehearsed_rows.inc, and, per quantity and target: of how many answers, how many are within 1.5 times the target, and how
 /// many cost at most 3 times the cheapest single run that meets it together with all finer ones.
 
 #include <filesystem>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include <fmt/core.h>
 
 #include "study/accuracy/accuracy_table.hpp"
+#include "study/accuracy/decision.hpp"
 #include "study/accuracy/errors.hpp"
 
 namespace repose::study {
@@ -98,25 +100,25 @@ ErrorModel model_without(const Chart& own, const std::vector<Chart>& charts,
   return model;
 }
 
-struct Answer {
-  bool met;
+struct Rehearsal {
+  bool met;  ///< by the model, its own runs not contradicting
   double error, cost, cheapest;
 };
 
-std::optional<Answer> answer_for(const Chart& chart, const std::vector<Chart>& charts, Quantity q,
+std::optional<Rehearsal> answer_for(const Chart& chart, const std::vector<Chart>& charts, Quantity q,
                                  double target) {
   const auto& reference = chart.reference.values[static_cast<std::size_t>(q)];
   // what the reference cannot judge
   if (!reference || reference->error > 0.5 * target) return {};
   const double length = length_of(chart.scene.scene);
-  bool measured = true;
   std::optional<ErrorModel> model;
   Made made;
   std::pair<bool, double> best_rank;
   double cheapest = HUGE_VAL;
-  for (const Candidate& candidate : candidates_for(chart.scene.scene, q, measured)) {
+  for (const Candidate& candidate : candidates_for(chart.scene.scene, q)) {
     const ErrorModel its_model = model_without(chart, charts, candidate, q);
     Made its = made_with(chart, candidate, q);
+    if (its.sizes.size() < 2) continue;  // not charted with this kernel
     const study::Plan plan = study::cheapest_plan(Convergence(its_model, length), its.sizes,
                                                   its.point_steps, target, HUGE_VAL);
     const bool meets = plan.error <= target;
@@ -131,7 +133,7 @@ std::optional<Answer> answer_for(const Chart& chart, const std::vector<Chart>& c
   if (made.start) so_far.starts_from(*made.start);
   double cost = 0.0;
   const Outcome outcome = study::run_to_target(
-      so_far, made.sizes, made.point_steps, target, HUGE_VAL,
+      so_far, {target, HUGE_VAL, {}}, made.sizes, made.point_steps,
       [&](const Level& next) -> std::optional<VectorXd> {
         if (next.runs > 0) return {};  // every size has been run once
         const auto k = static_cast<std::size_t>(
@@ -140,13 +142,14 @@ std::optional<Answer> answer_for(const Chart& chart, const std::vector<Chart>& c
         return made.values[k];
       });
   if (outcome == Outcome::stopped) return {};
-  const double error = study::relative_distance(so_far.estimate().value, reference->value);
-  return Answer{outcome == Outcome::met, error, cost, cheapest};
+  const study::Answer given = answer_of(so_far, {target, HUGE_VAL, {}});
+  const double error = study::relative_distance(given.estimate.value, reference->value);
+  return Rehearsal{outcome == Outcome::met && given.basis == Basis::measured, error, cost, cheapest};
 }
 
 struct Tally {
   int answers = 0, close = 0, cheap = 0, out_of_reach = 0;
-  void count(const Answer& answer, double target) {
+  void count(const Rehearsal& answer, double target) {
     if (!answer.met) {
       ++out_of_reach;
       return;
@@ -180,6 +183,7 @@ int rehearse(const fs::path& results) {
     }
     chart.reference = *reference;
   }
+  std::map<std::tuple<std::string, Quantity, double>, Tally> by_row;
   std::map<Quantity, Tally> by_quantity;
   std::map<double, Tally> by_target;
   for (const Chart& chart : charts)
@@ -190,6 +194,7 @@ int rehearse(const fs::path& results) {
         if (!answer) continue;
         by_quantity[q].count(*answer, target);
         by_target[target].count(*answer, target);
+        by_row[{chart.law(), q, target}].count(*answer, target);
         if (answer->met && (answer->error > 1.5 * target || answer->cost > 3.0 * answer->cheapest))
           fmt::print(stderr, "{} {} {:g}: error {:.3f}, cost {:.2g} of the cheapest\n", chart.name,
                      name_of(q), target, answer->error, answer->cost / answer->cheapest);
@@ -201,6 +206,17 @@ int rehearse(const fs::path& results) {
   for (const auto& [q, tally] : by_quantity) fmt::print("{}", tally.row(std::string(name_of(q))));
   for (const auto& [target, tally] : by_target)
     fmt::print("{}", tally.row(fmt::format("{:g} %", 100.0 * target)));
+  fmt::print("\n");
+  for (const auto& [key, tally] : by_row) {
+    const auto& [law, q, target] = key;
+    if (tally.answers == 0) continue;
+    const mpm::Scene& of_law =
+        std::find_if(charts.begin(), charts.end(), [&](const Chart& c) { return c.law() == law; })
+            ->scene.scene;
+    fmt::print("Row{{\"{}\", \"{}\", Quantity::{}, {:g}, {}, {}}},\n", law,
+               find_law(of_law.bodies.front().law).option, name_of(q), target, tally.answers,
+               tally.close);
+  }
   return 0;
 }
 

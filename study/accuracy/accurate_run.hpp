@@ -45,6 +45,8 @@ class AccurateRun {
   explicit AccurateRun(const AccuracyGoal& goal);
 
   const AccuracyGoal& goal() const { return goal_; }
+  /// As it is run, apart from what the choice decides.
+  const mpm::Scene& scene() const { return scene_; }
   const Choice& choice() const { return choice_; }
   /// Whether a choice's plan meets target and budget. What own runs will take is not known
   /// beforehand: they are never refused.

@@ -11,6 +11,7 @@
 #include "io/json.hpp"
 #include "study/accuracy/accuracy_table.hpp"
 #include "study/accuracy/errors.hpp"
+#include "study/accuracy/trained_domain.hpp"
 #include "tests/app/csv_table.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -101,8 +102,7 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
   const io::Json s = summary("a");
   input::InputFile file = input::InputFile::read(scene_);
   const mpm::Scene scene = input::read_scene(file).scene;
-  bool measured = false;
-  const auto candidates = candidates_for(scene, Quantity::kinetic, measured);
+  const auto candidates = candidates_for(scene, Quantity::kinetic);
   const auto used = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
     return mpm::name_of(c.kernel) == s["kernel"].get<std::string>() &&
            mpm::name_of(c.transfer) == s["transfer"].get<std::string>() &&
@@ -167,9 +167,8 @@ TEST(AccuracyTable, EveryLawHasConstants) {
         input::InputFile::read(fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, name));
     const mpm::Scene scene = input::read_scene(file).scene;
     for (std::size_t q = 0; q < advised_names.size(); ++q) {
-      bool measured = false;
-      const auto candidates = candidates_for(scene, static_cast<Quantity>(q), measured);
-      EXPECT_TRUE(measured) << name;
+      const auto candidates = candidates_for(scene, static_cast<Quantity>(q));
+      EXPECT_TRUE(is_charted(scene.bodies.front().law)) << name;
       ASSERT_FALSE(candidates.empty()) << name << " " << quantity_names[q];
       for (const Candidate& c : candidates) {
         EXPECT_GT(c.model.bias, 0.0);
