@@ -4,12 +4,12 @@
 /// asks for all five quantities to 2, 3 and 5 %, each with BUDGET CPU seconds, and writes
 /// FOLDER/NAME/answers.jsonl. The references are extrapolated from cells of SIZES (three,
 /// "0.0083,0.0042,0.0021" [m]) with both kernels and two Courant numbers, the finest with one; they
-/// use other steps than the answers, so they share no run with them. A scene that is shipped has no
-/// KEY=VALUE. Runs in FOLDER/NAME/runs are not repeated.
+/// use other steps than the answers, so they share no run with them. A scene is
+/// shipped that has a shipped one's name and no KEY=VALUE. Runs in FOLDER/NAME/runs are not repeated.
 ///   bench_accuracy_exam tables FOLDER
 /// prints the tables of docs/accuracy.md from all answers in FOLDER.
 
-#include <charconv>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -160,7 +160,9 @@ int run(const std::vector<std::string>& words) {
   paper.sizes = numbers_of(words[4]);
   paper.budget = std::stod(words[5]);
   const std::vector<std::string> sets(words.begin() + 6, words.end());
-  paper.shipped = sets.empty();
+  const auto names = input::shipped_scenes();
+  paper.shipped =
+      sets.empty() && std::find(names.begin(), names.end(), words[3]) != names.end();
   input::InputFile input = input::open_scene(words[3], sets);
   paper.file = input::read_scene(input);
   return answer(paper);
