@@ -220,9 +220,9 @@ class AccuracyCommand {
   std::string promise_text(const study::Answer& answer) const {
     if (!answer.met)
       return fmt::format("cannot promise {}: {}", percent(request_.target),
-                         answer.reasons.empty()
-                             ? "no plan reaches it"
-                             : fmt::format("its own runs show {}", bar_text(answer.estimate.error)));
+                         answer.reasons.empty() ? "no plan reaches it"
+                                                : fmt::format("its own runs show {}",
+                                                              bar_text(answer.estimate.error)));
     if (const auto shown = work_.shown())
       return fmt::format("{} of {} such answers were within 1.5 of the target", shown->held,
                          shown->answers);
@@ -239,7 +239,8 @@ class AccuracyCommand {
             : fmt::format("{} = {:.4g} ± {:.2g} {} ({})", quantity(), estimate.value[0],
                           estimate.error * std::abs(estimate.value[0]),
                           study::unit_of(request_.quantity), bar_text(estimate.error));
-    say(fmt::format("  {}; {}\n{}"
+    say(
+        fmt::format("  {}; {}\n{}"
                     "  from all runs; cells of {:.4g} mm alone are about {} off\n"
                     "  {} of CPU (predicted {})\n"
                     "  {}: estimate.csv, accuracy.svg; `repose run {}` is the finest run\n",

@@ -5,7 +5,8 @@
 /// FOLDER/NAME/answers.jsonl. The references are extrapolated from cells of SIZES (three,
 /// "0.0083,0.0042,0.0021" [m]) with both kernels and two Courant numbers, the finest with one; they
 /// use other steps than the answers, so they share no run with them. A scene is
-/// shipped that has a shipped one's name and no KEY=VALUE. Runs in FOLDER/NAME/runs are not repeated.
+/// shipped that has a shipped one's name and no KEY=VALUE. Runs in FOLDER/NAME/runs are not
+/// repeated.
 ///   bench_accuracy_exam tables FOLDER
 /// prints the tables of docs/accuracy.md from all answers in FOLDER.
 
@@ -53,8 +54,8 @@ std::vector<SweepRun> reference_runs(const Paper& paper, const mpm::Scene& scene
       runs.push_back(run_of(paper.file, scene_with(scene, candidate, h, k)));
       carry_out(runs.back(), paper.folder / "runs", 1, true);
       if (!runs.back().done())
-        throw std::runtime_error(fmt::format("{}: {}", runs.back().scene().name,
-                                             runs.back().summary.reason));
+        throw std::runtime_error(
+            fmt::format("{}: {}", runs.back().scene().name, runs.back().summary.reason));
     }
   return runs;
 }
@@ -161,8 +162,7 @@ int run(const std::vector<std::string>& words) {
   paper.budget = std::stod(words[5]);
   const std::vector<std::string> sets(words.begin() + 6, words.end());
   const auto names = input::shipped_scenes();
-  paper.shipped =
-      sets.empty() && std::find(names.begin(), names.end(), words[3]) != names.end();
+  paper.shipped = sets.empty() && std::find(names.begin(), names.end(), words[3]) != names.end();
   input::InputFile input = input::open_scene(words[3], sets);
   paper.file = input::read_scene(input);
   return answer(paper);

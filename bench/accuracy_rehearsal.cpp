@@ -1,10 +1,10 @@
 /// \file
-/// The training scenes of `repose run --accuracy`: charted, and each predicted with the constants of
-/// the others (scripts/accuracy).
+/// The training scenes of `repose run --accuracy`: charted, and each predicted with the constants
+/// of the others (scripts/accuracy).
 ///   bench_accuracy_rehearsal chart FOLDER SCENE FINEST REFERENCE SCATTER [KEY=VALUE...]
 /// charts a scene into FOLDER: both kernels with the cells that --accuracy chooses from, 50 mm to
-/// FINEST [m], and the quadratic one with cells of REFERENCE; SCATTER 1: also three sizes with three
-/// steps close to each other, into FOLDER_scatter. Runs that are there are not repeated.
+/// FINEST [m], and the quadratic one with cells of REFERENCE; SCATTER 1: also three sizes with
+/// three steps close to each other, into FOLDER_scatter. Runs that are there are not repeated.
 ///   bench_accuracy_rehearsal predict FOLDER
 /// reads all charts train_* in FOLDER and prints, per quantity and target, of how many answers, how
 /// many are within 1.5 times the target, and how many cost at most 3 times the cheapest single run
@@ -94,9 +94,8 @@ double cheapest_alone(const Made& made, double target) {
 }
 
 /// A candidate's model with what the scenes of a law show, but for one of them (null: all).
-ErrorModel model_without(const Chart* own, const std::string& law,
-                         const std::vector<Chart>& charts, const Candidate& candidate,
-                         Quantity q) {
+ErrorModel model_without(const Chart* own, const std::string& law, const std::vector<Chart>& charts,
+                         const Candidate& candidate, Quantity q) {
   std::vector<ShownErrors> of_law, of_all;
   for (const Chart& chart : charts) {
     if (&chart == own || !chart.reference.values[static_cast<std::size_t>(q)]) continue;
@@ -117,8 +116,8 @@ struct Rehearsal {
   double error, cost, cheapest;
 };
 
-std::optional<Rehearsal> answer_for(const Chart& chart, const std::vector<Chart>& charts, Quantity q,
-                                 double target) {
+std::optional<Rehearsal> answer_for(const Chart& chart, const std::vector<Chart>& charts,
+                                    Quantity q, double target) {
   const auto& reference = chart.reference.values[static_cast<std::size_t>(q)];
   // what the reference cannot judge
   if (!reference || reference->error > 0.5 * target) return {};
@@ -156,7 +155,8 @@ std::optional<Rehearsal> answer_for(const Chart& chart, const std::vector<Chart>
   if (outcome == Outcome::stopped) return {};
   const study::Answer given = answer_of(so_far, {target, HUGE_VAL, {}});
   const double error = study::relative_distance(given.estimate.value, reference->value);
-  return Rehearsal{outcome == Outcome::met && given.basis == Basis::measured, error, cost, cheapest};
+  return Rehearsal{outcome == Outcome::met && given.basis == Basis::measured, error, cost,
+                   cheapest};
 }
 
 struct Tally {
@@ -178,8 +178,7 @@ struct Tally {
 };
 
 /// Makes the runs of a chart and notes what they are.
-void carry_out_chart(const input::SceneFile& scene, const input::Sweep& sweep,
-                     const fs::path& at) {
+void carry_out_chart(const input::SceneFile& scene, const input::Sweep& sweep, const fs::path& at) {
   const io::ResultFolder folder(at);
   folder.write_file("input.toml", input::resolved_input(scene, "A chart of --accuracy.") +
                                       input::chart_text(sweep));
@@ -250,10 +249,11 @@ void print_constants(const std::vector<Chart>& charts, const std::vector<Chart>&
               shown.push_back(shown_errors(family, q, chart.reference, chart.bin));
         if (!shown.empty()) with_scatter.model.scatter = pooled_model(shown, way.model).scatter;
         const ErrorModel model = model_without(nullptr, law, charts, with_scatter, q);
-        fmt::print("Row{{\"{}\", Kernel::{}, Transfer::relaxed, {:g}, Quantity::{}, {:.3g}, {:.3g}, "
-                   "{:.3g}, {:.3g}}},\n",
-                   law, mpm::name_of(way.kernel), way.courant, name_of(q), model.bias, model.motion,
-                   model.irregularity, model.scatter);
+        fmt::print(
+            "Row{{\"{}\", Kernel::{}, Transfer::relaxed, {:g}, Quantity::{}, {:.3g}, {:.3g}, "
+            "{:.3g}, {:.3g}}},\n",
+            law, mpm::name_of(way.kernel), way.courant, name_of(q), model.bias, model.motion,
+            model.irregularity, model.scatter);
       }
 }
 
@@ -286,9 +286,9 @@ int rehearse(const fs::path& results) {
   for (const auto& [key, tally] : by_row) {
     const auto& [law, q, target] = key;
     if (tally.answers == 0) continue;
-    const mpm::Scene& of_law =
-        std::find_if(charts.begin(), charts.end(), [&](const Chart& c) { return c.law() == law; })
-            ->scene.scene;
+    const mpm::Scene& of_law = std::find_if(charts.begin(), charts.end(), [&](const Chart& c) {
+                                 return c.law() == law;
+                               })->scene.scene;
     fmt::print("Row{{\"{}\", \"{}\", Quantity::{}, {:g}, {}, {}}},\n", law,
                find_law(of_law.bodies.front().law).option, name_of(q), target, tally.answers,
                tally.close);

@@ -13,7 +13,7 @@ namespace {
 
 /// A law at rest under pressure p: what limits an explicit step.
 struct AtRest {
-  double wave_speed = 0.0;  ///< 0 if it has no rest state there [m/s]
+  double wave_speed = 0.0;   ///< 0 if it has no rest state there [m/s]
   double diffusivity = 0.0;  ///< η/ρ of an explicit viscosity [m²/s]
 };
 AtRest at_rest_under(const Material& material, double p) {
@@ -70,15 +70,15 @@ Estimate estimate(const Scene& scene, int threads) {
     const auto material = make_material(body.law);
     const double weight = simulation.diagnostics().density_max * scene.gravity * body.size[1];
     const AtRest rest = at_rest_under(*material, 2.0 * weight);
-    signal =
-        std::max(signal, rest.wave_speed + std::hypot(body.velocity[0], body.velocity[1]));
+    signal = std::max(signal, rest.wave_speed + std::hypot(body.velocity[0], body.velocity[1]));
     diffusivity = std::max(diffusivity, rest.diffusivity);
   }
   signal += std::sqrt(2.0 * scene.gravity * top);
   e.wave_dt_s = std::min(e.first_dt_s, scene.courant * scene.h / signal);
   if (diffusivity > 0.0 && scene.viscosity == Viscosity::explicit_force)
     e.viscous_dt_s = stable_step(
-        {0.0, 0.0, 2.0 * static_cast<double>(scene.dimensions()) * diffusivity / (scene.h * scene.h)},
+        {0.0, 0.0,
+         2.0 * static_cast<double>(scene.dimensions()) * diffusivity / (scene.h * scene.h)},
         scene.courant, scene.h);
   const double typical = scene.dt ? *scene.dt : std::min(e.wave_dt_s, e.viscous_dt_s);
   e.steps = scene.end_time / typical;

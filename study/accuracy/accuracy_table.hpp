@@ -21,9 +21,9 @@ struct Candidate {
 /// The orders that a quantity's errors follow, and the caution of its error bars; no constants.
 ErrorModel error_form(Quantity q);
 
-/// The measured ways to run scenes of these laws; of several bodies' laws, the largest constants and
-/// the shortest step count. Where a law, or its form, has none of its own, those of all laws stand
-/// in: enough to plan with, not to promise (trained_domain.hpp). In space steps are
+/// The measured ways to run scenes of these laws; of several bodies' laws, the largest constants
+/// and the shortest step count. Where a law, or its form, has none of its own, those of all laws
+/// stand in: enough to plan with, not to promise (trained_domain.hpp). In space steps are
 /// space_share times as long.
 std::vector<Candidate> candidates_for(const mpm::Scene& scene, Quantity q);
 /// √(2/3), by which what is stable in space is shorter (mpm/step/step_size.hpp).

@@ -103,7 +103,8 @@ std::vector<std::string> AccurateRun::reasons_for(Quantity q) const {
   const LawInfo& law = find_law(scene_.bodies.front().law);
   const auto known = rehearsed(law.name, law.option, q, goal_.target);
   if (!known)
-    reasons.push_back(fmt::format("{} of {} to {:g} %", name_of(q), law.name, 100.0 * goal_.target));
+    reasons.push_back(
+        fmt::format("{} of {} to {:g} %", name_of(q), law.name, 100.0 * goal_.target));
   else if (!known->shown())
     reasons.push_back(fmt::format("{} of {} to {:g} %, where {} of {} answers held", name_of(q),
                                   law.name, 100.0 * goal_.target, known->held, known->answers));
@@ -159,8 +160,8 @@ std::optional<Eigen::VectorXd> AccurateRun::value_of_next(
   const io::InterruptGuard interrupt;
   SweepRun run = run_of(goal_.file, scene_with(scene_, choice_.candidate, next.h, next.runs));
   const double begun = usage().cpu_s;
-  const io::ExitCode code = carry_out(run, goal_.runs, goal_.threads, goal_.resume,
-                                      question_.budget - cpu_s());
+  const io::ExitCode code =
+      carry_out(run, goal_.runs, goal_.threads, goal_.resume, question_.budget - cpu_s());
   if (code == io::ExitCode::interrupted) {
     interrupted_ = interrupt.requested();
     stopped_by_budget_ = !interrupted_;
@@ -182,9 +183,9 @@ std::optional<Eigen::VectorXd> AccurateRun::value_of_next(
 
 AccurateRun::End AccurateRun::run(const std::function<void(const SweepRun&)>& after_run) {
   const io::InterruptGuard interrupt;
-  const Outcome outcome =
-      run_to_target(so_far_, question_, sizes_, costs_,
-                    [&](const Level& next) { return value_of_next(next, after_run); });
+  const Outcome outcome = run_to_target(so_far_, question_, sizes_, costs_, [&](const Level& next) {
+    return value_of_next(next, after_run);
+  });
   if (interrupted_ || interrupt.requested()) return End::interrupted;
   if (outcome == Outcome::met) return End::met;
   if (outcome == Outcome::out_of_reach || stopped_by_budget_)

@@ -34,7 +34,7 @@ inline constexpr double default_budget_s = 600.0;
 struct Choice {
   Candidate candidate{};
   Plan plan;
-  std::vector<double> costs;  ///< CPU seconds of one run with each size
+  std::vector<double> costs;         ///< CPU seconds of one run with each size
   std::vector<std::string> reasons;  ///< why its own runs decide; empty where the model speaks
 };
 
@@ -100,8 +100,8 @@ class AccurateRun {
   std::vector<std::string> reasons_for(Quantity q) const;
   void estimate_costs();
   void learn_cost(const SweepRun& run);
-  std::optional<Eigen::VectorXd> value_of_next(const Level& next,
-                                               const std::function<void(const SweepRun&)>& after_run);
+  std::optional<Eigen::VectorXd> value_of_next(
+      const Level& next, const std::function<void(const SweepRun&)>& after_run);
 
   const AccuracyGoal& goal_;
   mpm::Scene scene_;

@@ -21,7 +21,8 @@ bool is_power_of_two(double ratio) {
   return std::abs(halvings - std::round(halvings)) < 1e-6;
 }
 
-/// Whether own runs make use of a size: a half, a quarter, ... of the coarsest or of two thirds of it.
+/// Whether own runs make use of a size: a half, a quarter, ... of the coarsest or of two thirds of
+/// it.
 bool is_own_size(const std::vector<double>& sizes, double h) {
   return is_power_of_two(sizes.front() / h) || is_power_of_two(2.0 * sizes.front() / (3.0 * h));
 }

@@ -70,10 +70,11 @@ class Convergence {
   Estimate estimate() const;
   /// B: the relative error that runs with cells of h are expected to have, scatter aside.
   double bias_at(double h) const;
-  /// The bias that the pairs of sizes show, over the one that the model alone expects; 0 where there
-  /// are none.
+  /// The bias that the pairs of sizes show, over the one that the model alone expects; 0 where
+  /// there are none.
   double shown_over_expected() const;
-  /// Standard deviation of one run with cells of h, relative: the model's, scaled by the scatter seen.
+  /// Standard deviation of one run with cells of h, relative: the model's, scaled by the scatter
+  /// seen.
   double scatter_at(double h) const;
 
  private:

@@ -26,7 +26,8 @@ std::string row_of(const std::string& name, const Marks& marks) {
 
 std::string head(std::string_view of_what) {
   return fmt::format(
-      "\n| {} | questions | promised: within 1.5 × target | beyond | share within | cannot promise: "
+      "\n| {} | questions | promised: within 1.5 × target | beyond | share within | cannot "
+      "promise: "
       "bar holds | broken | undecidable |\n|---|---|---|---|---|---|---|---|\n",
       of_what);
 }
@@ -36,15 +37,16 @@ std::string head(std::string_view of_what) {
 Reference reference_of_both(const Reference& a, const Reference& b) {
   Reference both = a;
   both.value = 0.5 * (a.value + b.value);
-  both.error = std::hypot(0.5 * (a.error + b.error), 0.5 * (a.value - b.value).lpNorm<1>() /
-                                                         both.value.lpNorm<1>());
+  both.error = std::hypot(0.5 * (a.error + b.error),
+                          0.5 * (a.value - b.value).lpNorm<1>() / both.value.lpNorm<1>());
   return both;
 }
 
 Verdict verdict_of(const Graded& answer) {
   const double judged_by = answer.promised ? answer.target : answer.bar;
   if (answer.reference_bar > 0.5 * judged_by) return Verdict::undecidable;
-  if (answer.promised) return answer.error <= 1.5 * answer.target ? Verdict::within : Verdict::beyond;
+  if (answer.promised)
+    return answer.error <= 1.5 * answer.target ? Verdict::within : Verdict::beyond;
   return answer.error <= answer.bar ? Verdict::bar_holds : Verdict::bar_broken;
 }
 
@@ -61,8 +63,9 @@ int Marks::questions() const {
 
 double Marks::share_within() const {
   const int decided = (*this)[Verdict::within] + (*this)[Verdict::beyond];
-  return decided == 0 ? std::nan("")
-                      : static_cast<double>((*this)[Verdict::within]) / static_cast<double>(decided);
+  return decided == 0
+             ? std::nan("")
+             : static_cast<double>((*this)[Verdict::within]) / static_cast<double>(decided);
 }
 
 double Marks::share_not_promised() const {
@@ -87,10 +90,10 @@ std::string exam_tables(std::span<const Graded> answers) {
   for (const auto* rows : {&by_target, &by_question})
     for (const auto& [name, marks] : *rows) text += row_of(name, marks);
   for (const auto& [name, marks] : by_basis) text += row_of("basis: " + name, marks);
-  text += fmt::format("\nNot promised: {} of all questions, {} of the shipped scenes' at 5 %.\n",
-                      per_cent(all.share_not_promised()),
-                      shipped_at_5.questions() == 0 ? "–"
-                                                    : per_cent(shipped_at_5.share_not_promised()));
+  text += fmt::format(
+      "\nNot promised: {} of all questions, {} of the shipped scenes' at 5 %.\n",
+      per_cent(all.share_not_promised()),
+      shipped_at_5.questions() == 0 ? "–" : per_cent(shipped_at_5.share_not_promised()));
   text += head("scene");
   for (const auto& [name, marks] : by_scene) text += row_of(name, marks);
   text +=
@@ -112,12 +115,17 @@ std::string exam_tables(std::span<const Graded> answers) {
 
 std::string line_of(const Graded& answer) {
   const Json bar = std::isfinite(answer.bar) ? Json(answer.bar) : Json();
-  return Json{{"scene", answer.scene},       {"shipped", answer.shipped},
-              {"quantity", answer.quantity}, {"target", answer.target},
-              {"promised", answer.promised}, {"basis", answer.basis},
-              {"bar", bar},                  {"error", answer.error},
+  return Json{{"scene", answer.scene},
+              {"shipped", answer.shipped},
+              {"quantity", answer.quantity},
+              {"target", answer.target},
+              {"promised", answer.promised},
+              {"basis", answer.basis},
+              {"bar", bar},
+              {"error", answer.error},
               {"reference_bar", answer.reference_bar},
-              {"cpu_s", answer.cpu_s},       {"finest_h_m", answer.finest_h}}
+              {"cpu_s", answer.cpu_s},
+              {"finest_h_m", answer.finest_h}}
       .dump();
 }
 

@@ -51,8 +51,7 @@ Extrapolated extrapolated(std::span<const Resolution> levels, const Three& three
 }
 
 /// How far an estimate is from those of the two sizes next coarser, weighed.
-double unsteadiness(std::span<const Resolution> levels, const Three& three,
-                    const VectorXd& value) {
+double unsteadiness(std::span<const Resolution> levels, const Three& three, const VectorXd& value) {
   double apart = 0.0;
   int before = 0;
   for (auto coarser = three_before(levels, three); coarser && before < 2;
@@ -63,8 +62,7 @@ double unsteadiness(std::span<const Resolution> levels, const Three& three,
   if (before < 2) {  // there is one more estimate, of two sizes
     const Resolution &coarse = levels[three[0]], &middle = levels[three[1]];
     const VectorXd u = middle.mean();
-    const VectorXd earlier =
-        u + richardson_weight(coarse.h, middle.h, 1.0) * (u - coarse.mean());
+    const VectorXd earlier = u + richardson_weight(coarse.h, middle.h, 1.0) * (u - coarse.mean());
     apart = std::max(apart, relative_distance(earlier, value));
     ++before;
   }
@@ -94,8 +92,8 @@ OwnEstimate estimate_of(std::span<const Resolution> levels, const Three& three, 
   };
   const double scattered =
       2.0 * std::hypot((1.0 + e.weight) * of_mean(fine), e.weight * of_mean(middle));
-  const double error = std::hypot(std::hypot(to_come, of_order),
-                                  unsteadiness(levels, three, e.value), scattered);
+  const double error =
+      std::hypot(std::hypot(to_come, of_order), unsteadiness(levels, three, e.value), scattered);
   return {e.value, 3, error, scattered, e.order, e.observed};
 }
 
@@ -108,8 +106,8 @@ std::optional<OwnEstimate> own_estimate(std::span<const Resolution> levels, doub
     const Resolution &coarse = levels.front(), &fine = levels.back();
     constexpr double safety = 3.0;  // Roache's factor where there are two sizes
     const double change = relative_distance(coarse.mean(), fine.mean());
-    return OwnEstimate{fine.mean(), 2, safety * richardson_weight(coarse.h, fine.h, 1.0) * change,
-                       0.0, 1.0, std::nan("")};
+    return OwnEstimate{fine.mean(), 2,   safety * richardson_weight(coarse.h, fine.h, 1.0) * change,
+                       0.0,         1.0, std::nan("")};
   }
   OwnEstimate estimate = estimate_of(levels, *three, scatter);
   const auto before = three_before(levels, *three);

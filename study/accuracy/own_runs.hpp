@@ -16,8 +16,8 @@ struct OwnEstimate {
   int sizes = 3;           ///< that count, 3 or 2
   double error = 0.0;      ///< error bar, relative
   double scattered = 0.0;  ///< its part by scatter
-  double order = 0.0;     ///< used, within own_orders
-  double observed = 0.0;  ///< of the three sizes; NaN where the changes do not shrink
+  double order = 0.0;      ///< used, within own_orders
+  double observed = 0.0;   ///< of the three sizes; NaN where the changes do not shrink
 };
 
 /// Orders that extrapolations use: less than 1 would add more than the last change, which no scene

@@ -29,9 +29,7 @@ struct Trained {
 };
 
 constexpr std::array mu_i_parameters{
-    Between{"mu_0", 0.2, 0.6},
-    Between{"mu_d", 0.4, 0.8},
-    Between{"I_0", 0.15, 0.558},
+    Between{"mu_0", 0.2, 0.6}, Between{"mu_d", 0.4, 0.8}, Between{"I_0", 0.15, 0.558},
     Between{"d", 0.0053 / 0.4, 0.02 / 0.4, Unit::height},
     Between{"K", 26000.0 / (1300.0 * 9.8 * 0.4), 254800.0 / (1300.0 * 9.8 * 0.2), Unit::weight}};
 // √(9.8 × 0.4) = 1.98, √(9.8 × 0.2) = 1.4: water of the paper's column to honey of half its height
@@ -40,9 +38,8 @@ constexpr std::array newtonian_parameters{
     Between{"K", 26000.0 / (1300.0 * 9.8 * 0.4), 26000.0 / (1300.0 * 9.8 * 0.2), Unit::weight},
     Between{"alpha", 7.0, 7.0}};
 constexpr std::array cam_clay_parameters{
-    Between{"M", 0.6614, 1.1},       Between{"lambda", 0.0186, 0.0186},
-    Between{"kappa", 0.001, 0.001},  Between{"nu", 0.3, 0.3},
-    Between{"Gamma", 1.5432, 1.5432}, Between{"p_ref", 1.0, 1.0}};
+    Between{"M", 0.6614, 1.1}, Between{"lambda", 0.0186, 0.0186}, Between{"kappa", 0.001, 0.001},
+    Between{"nu", 0.3, 0.3},   Between{"Gamma", 1.5432, 1.5432},  Between{"p_ref", 1.0, 1.0}};
 constexpr std::array trained{
     Trained{"mu_i", "elastoviscoplastic", 3.0, 0.5, 4.0, 35.0, mu_i_parameters},
     Trained{"newtonian", "true", 2.1, 0.66, 2.0, 20.0, newtonian_parameters},
@@ -86,24 +83,24 @@ void compare_body(const mpm::Scene& scene, const mpm::Body& body,
   const double height = body.size[1];
   const auto outside = [&](std::string_view what, double x, double lower, double upper) {
     if (!is_between(x, lower, upper))
-      reasons.push_back(fmt::format("{} of {:.3g} (shown: {:.3g} to {:.3g})", what, x, lower, upper));
+      reasons.push_back(
+          fmt::format("{} of {:.3g} (shown: {:.3g} to {:.3g})", what, x, lower, upper));
   };
   if (scene.gravity > 0.0)
     outside("an end time over sqrt(H/g)", scene.end_time / std::sqrt(height / scene.gravity), 0.0,
             found->longest_time);
   else
     reasons.emplace_back("no gravity");
-  outside("a height over width", height / body.size[0], found->least_aspect,
-          found->largest_aspect);
+  outside("a height over width", height / body.size[0], found->least_aspect, found->largest_aspect);
   if (scene.tilt_deg < 0.0 || scene.tilt_deg > found->steepest_tilt)
     reasons.push_back(fmt::format("a tilt of {:g} degrees (shown: 0 to {:g})", scene.tilt_deg,
                                   found->steepest_tilt));
   const auto material = make_material(body.law);
   for (const Between& range : found->parameters) {
-    const double unit = range.unit == Unit::itself
-                            ? 1.0
-                            : unit_of(range.unit, material->density_at(0.0, 1.0), scene.gravity,
-                                      height);
+    const double unit =
+        range.unit == Unit::itself
+            ? 1.0
+            : unit_of(range.unit, material->density_at(0.0, 1.0), scene.gravity, height);
     if (!(unit > 0.0)) continue;
     constexpr std::array<std::string_view, 4> per{"", " over H", " over rho g H",
                                                   " over rho sqrt(g H) H"};

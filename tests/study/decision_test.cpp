@@ -1,12 +1,13 @@
 // What may be promised and what not: the domain that was charted, answers from own runs, costs, and
 // the marks of an exam. Values are made up, limits are known.
+#include "study/accuracy/decision.hpp"
+
 #include <cmath>
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "input/read_scene.hpp"
-#include "study/accuracy/decision.hpp"
 #include "study/accuracy/exam.hpp"
 #include "study/accuracy/own_runs.hpp"
 #include "study/accuracy/run_cost.hpp"
@@ -55,8 +56,8 @@ TEST(OwnRuns, ScatterOfTheMeansIsCarriedThrough) {
 
 // 1.3, 1.2, 1.2: the last change is none. By order 2 it would be a quarter of the one before.
 TEST(OwnRuns, SizesThatAgreeByChanceDoNotNarrowTheBar) {
-  const std::vector<Resolution> levels{{0.4, {number(1.3)}}, {0.2, {number(1.2)}},
-                                       {0.1, {number(1.2)}}};
+  const std::vector<Resolution> levels{
+      {0.4, {number(1.3)}}, {0.2, {number(1.2)}}, {0.1, {number(1.2)}}};
   const auto own = own_estimate(levels, 0.0);
   EXPECT_NEAR(own->value[0], 1.2, 1e-9);
   const double change = 0.25 * 0.1 / 1.2;
@@ -66,8 +67,8 @@ TEST(OwnRuns, SizesThatAgreeByChanceDoNotNarrowTheBar) {
 }
 
 TEST(OwnRuns, ChangesThatGrowGiveAWideBar) {
-  const std::vector<Resolution> levels{{0.4, {number(1.0)}}, {0.2, {number(1.1)}},
-                                       {0.1, {number(1.3)}}};
+  const std::vector<Resolution> levels{
+      {0.4, {number(1.0)}}, {0.2, {number(1.1)}}, {0.1, {number(1.3)}}};
   const auto own = own_estimate(levels, 0.0);
   EXPECT_TRUE(std::isnan(own->observed));
   EXPECT_NEAR(own->value[0], 1.5, 1e-12) << "of order 1";
@@ -101,8 +102,8 @@ TEST(RunCost, HalvedCellsTakeEightTimesAndSixteenWhereViscosityBoundsTheStep) {
 }
 
 mpm::Scene scene_of(const std::string& name, const std::vector<std::string>& sets = {}) {
-  input::InputFile file = input::InputFile::read(
-      fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, name), sets);
+  input::InputFile file =
+      input::InputFile::read(fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, name), sets);
   return input::read_scene(file).scene;
 }
 
@@ -117,8 +118,8 @@ TEST(TrainedDomain, HasWhatWasCharted) {
 
 TEST(TrainedDomain, SaysWhatIsOutside) {
   const auto only_reason = [](const std::string& name, std::vector<std::string> sets) {
-    sets.insert(sets.begin(), name == "flat_newtonian" ? "scene.end_time=0.3"
-                                                       : "scene.end_time=0.4");
+    sets.insert(sets.begin(),
+                name == "flat_newtonian" ? "scene.end_time=0.3" : "scene.end_time=0.4");
     const std::vector<std::string> reasons = beyond_training(scene_of(name, sets));
     return reasons.size() == 1 ? reasons.front() : fmt::format("{} reasons", reasons.size());
   };
@@ -162,8 +163,8 @@ TEST(Decision, OwnRunsDecideWhereTheSceneIsOfAnotherKind) {
   EXPECT_EQ(early.reasons, std::vector<std::string>{"another law"});
   EXPECT_LT(early.estimate.error, 0.5);
   EXPECT_FALSE(early.met) << "two sizes never are enough";
-  const Answer later = answer_of(runs_of_slope(typical, 1.0, {0.04, 0.02, 0.01}),
-                                 {0.5, HUGE_VAL, {"another law"}});
+  const Answer later =
+      answer_of(runs_of_slope(typical, 1.0, {0.04, 0.02, 0.01}), {0.5, HUGE_VAL, {"another law"}});
   EXPECT_TRUE(later.met);
 }
 
@@ -196,9 +197,9 @@ TEST(Decision, OwnRunsStayWithinTheBudget) {
   const std::vector<double> seconds{1.0, 3.4, 8.0, 27.0, 64.0};
   for (const auto& [budget, finest] : {std::pair{103.0, 0.04}, {104.0, 0.03}}) {
     Convergence so_far(typical, 1.0);
-    const Outcome outcome = run_to_target(
-        so_far, {1e-6, budget, {"another law"}}, sizes, seconds,
-        [](const Level& next) { return std::optional(number(1.0 + next.h)); });
+    const Outcome outcome =
+        run_to_target(so_far, {1e-6, budget, {"another law"}}, sizes, seconds,
+                      [](const Level& next) { return std::optional(number(1.0 + next.h)); });
     EXPECT_EQ(outcome, Outcome::out_of_reach);
     EXPECT_EQ(so_far.levels().back().h, finest) << budget;
   }
@@ -274,11 +275,9 @@ TEST(Exam, TheTableHasEveryWrongAnswer) {
   const std::string text = exam_tables(answers);
   EXPECT_NE(text.find("| all, 2 scenes | 3 | 1 | 1 | 50 % | 1 | 0 | 0 |"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("| shipped scenes at 5 % | 1 | 0 | 1 | 0 % | 0 | 0 | 0 |"),
-            std::string::npos)
+  EXPECT_NE(text.find("| shipped scenes at 5 % | 1 | 0 | 1 | 0 % | 0 | 0 | 0 |"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("Not promised: 33 % of all questions, 0 % of the shipped"),
-            std::string::npos)
+  EXPECT_NE(text.find("Not promised: 33 % of all questions, 0 % of the shipped"), std::string::npos)
       << text;
   EXPECT_NE(text.find("| b: beyond | height | 5 % | met, own runs | 4 % | 8 % | 0.1 % |"),
             std::string::npos)

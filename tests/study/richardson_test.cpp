@@ -258,7 +258,8 @@ TEST(ErrorModel, RunsEndWhereNoPlanMeetsTheTarget) {
     return std::optional(VectorXd::Constant(1, 1.0 + next.h).eval());
   };
   Convergence poor(typical, 1.0);
-  EXPECT_EQ(run_to_target(poor, {1e-4, HUGE_VAL, {}}, sizes, seconds, value), Outcome::out_of_reach);
+  EXPECT_EQ(run_to_target(poor, {1e-4, HUGE_VAL, {}}, sizes, seconds, value),
+            Outcome::out_of_reach);
   EXPECT_GE(poor.levels().size(), 2u) << "there is an estimate";
   Convergence broken(typical, 1.0);
   EXPECT_EQ(run_to_target(broken, {0.05, HUGE_VAL, {}}, sizes, seconds,
