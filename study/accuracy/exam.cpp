@@ -14,7 +14,7 @@ namespace {
 using Json = io::Json;
 
 std::string per_cent(double x) {
-  return std::isfinite(x) ? fmt::format("{:.2g} %", 100.0 * x) : std::string("–");
+  return std::isfinite(x) ? fmt::format("{:.3g} %", 100.0 * x) : std::string("–");
 }
 
 std::string row_of(const std::string& name, const Marks& marks) {
