@@ -218,8 +218,10 @@ double AccurateRun::point_steps() const {
 }
 
 bool AccurateRun::front_at_far_wall() const {
-  return (goal_.quantity == Quantity::front || goal_.quantity == Quantity::front_99) &&
-         touches_far_wall(runs_.back());
+  if (goal_.quantity != Quantity::front && goal_.quantity != Quantity::front_99) return false;
+  const SweepRun& run = runs_.back();
+  return run.scene().right.kind != mpm::Wall::Kind::periodic &&
+         run.figure("front_m") > run.scene().domain[0] - run.scene().h;
 }
 
 double AccurateRun::finest_alone(const Estimate& estimate) const {

@@ -277,7 +277,8 @@ TEST(Exam, TheTableHasEveryWrongAnswer) {
       << text;
   EXPECT_NE(text.find("| shipped scenes at 5 % | 1 | 0 | 1 | 0 % | 0 | 0 | 0 |"), std::string::npos)
       << text;
-  EXPECT_NE(text.find("Not promised: 33.3 % of all questions, 0 % of the shipped"), std::string::npos)
+  EXPECT_NE(text.find("Not promised: 33.3 % of all questions, 0 % of the shipped"),
+            std::string::npos)
       << text;
   EXPECT_NE(text.find("| b: beyond | height | 5 % | met, own runs | 4 % | 8 % | 0.1 % |"),
             std::string::npos)
