@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "input/resolved_scene.hpp"
 #include "io/json.hpp"
@@ -68,9 +68,10 @@ std::string refusal(const AccurateRun& work) {
 class AccuracyCommand {
  public:
   explicit AccuracyCommand(const AccuracyRequest& request) : request_(request), work_(request) {
-    if (!work_.choice().measured)
+    if (work_.made_implicit())
       warnings_.push_back(
-          "the errors of this law have not been measured: the largest of all laws' stand in");
+          "an explicit viscosity would make the steps very short: it is solved for instead "
+          "(step.viscosity = \"implicit\")");
   }
 
   io::ExitCode run() {
@@ -84,12 +85,12 @@ class AccuracyCommand {
       case AccurateRun::End::interrupted:
         return stop_at_interrupt(folder);
       case AccurateRun::End::failed:
-        return stop_at_failure(folder, work_.runs().back());
+        return stop_at_failure(folder);
       case AccurateRun::End::met:
       case AccurateRun::End::missed:
         break;
     }
-    return finish(folder, end == AccurateRun::End::met);
+    return finish(folder);
   }
 
  private:
@@ -105,14 +106,18 @@ class AccuracyCommand {
   void tell_plan() const {
     const study::Candidate& way = work_.choice().candidate;
     const study::Plan& plan = work_.choice().plan;
+    const std::vector<std::string>& reasons = work_.choice().reasons;
     say(fmt::format(
-        "{}: {} to {}\n"
-        "  predicted: {} to an error bar of {}, about {} of CPU\n"
+        "{}: {} to {}\n{}"
+        "  predicted: {} to an error bar of {}, about {} of CPU{}\n"
         "  with kernel {}, transfer {}, courant {:g} (in place of the scene's h, kernel "
         "and step)\n",
-        scene().name, quantity(), percent(request_.target), words_for(plan), percent(plan.error),
-        seconds_text(plan.cost), mpm::name_of(way.kernel), mpm::name_of(way.transfer),
-        way.courant));
+        scene().name, quantity(), percent(request_.target), not_shown(reasons), words_for(plan),
+        percent(plan.error), seconds_text(plan.cost),
+        reasons.empty() ? ""
+                        : fmt::format(", at most {}", seconds_text(request_.budget.value_or(
+                                                          study::default_budget_s))),
+        mpm::name_of(way.kernel), mpm::name_of(way.transfer), way.courant));
     for (const std::string& warning : warnings_)
       if (!request_.quiet) fmt::print(stderr, "warning: {}\n", warning);
     event({{"event", "plan"},
@@ -121,7 +126,14 @@ class AccuracyCommand {
            {"target", request_.target},
            {"error_bar", plan.error},
            {"cpu_s", plan.cost},
-           {"finest_h_m", plan.levels.back().h}});
+           {"finest_h_m", plan.levels.back().h},
+           {"reasons", reasons}});
+  }
+
+  /// "  not shown for ...: its own runs decide", or nothing.
+  static std::string not_shown(const std::vector<std::string>& reasons) {
+    if (reasons.empty()) return "";
+    return fmt::format("  not shown for {}: its own runs decide\n", fmt::join(reasons, "; "));
   }
 
   void tell_run(const study::SweepRun& run) const {
@@ -138,13 +150,15 @@ class AccuracyCommand {
            {"cpu_s", run.figure("cpu_s")}});
   }
 
-  io::ExitCode finish(const io::ResultFolder& folder, bool met) {
-    const study::Estimate estimate = work_.convergence().estimate();
+  io::ExitCode finish(const io::ResultFolder& folder) {
+    const study::Answer answer = work_.answer();
+    const study::Estimate& estimate = answer.estimate;
     const double alone = work_.finest_alone(estimate);
     if (work_.front_at_far_wall())
       warnings_.push_back(
           "the material has reached the far wall: its front says nothing any more; a shorter "
           "scene.end_time or --for profile does");
+    if (work_.stopped_by_budget()) warnings_.push_back("the budget ended a run before its end");
     folder.write_file("accuracy.csv", work_.runs_csv(estimate));
     folder.write_file("estimate.csv", work_.estimate_csv(estimate));
     folder.write_file(
@@ -153,17 +167,13 @@ class AccuracyCommand {
                               fmt::format("The finest run behind an estimate of {}; it alone is "
                                           "about {} off.",
                                           quantity(), percent(alone))));
-    try {
-      if (request_.picture)
-        report::accuracy_picture(work_.runs(), request_.quantity, work_.convergence(), estimate,
-                                 request_.target, work_.bin())
-            .render_svg(folder.file("accuracy.svg"));
-    } catch (const report::PlotError& error) {
-      warnings_.push_back(fmt::format("accuracy.svg could not be drawn: {}", error.what()));
-    }
+    if (request_.picture && std::isfinite(estimate.error)) draw(folder, estimate);
     const double h = work_.convergence().levels().back().h;
     Json s = work_.summary("done", request_.seed);
-    s["met"] = met;
+    s["met"] = answer.met;
+    s["basis"] = study::name_of(answer.basis);
+    s["reasons"] = answer.reasons;
+    s["promise"] = promise_of(answer);
     if (!study::is_curve(request_.quantity)) s["value"] = estimate.value[0];
     s["error_bar"] = estimate.error;
     s["finest_alone"] = alone;
@@ -171,29 +181,74 @@ class AccuracyCommand {
     s["warnings"] = warnings_;
     folder.write_file("summary.json", s.dump(2) + "\n");
     event(s);
+    tell_answer(folder, answer, alone);
+    if (!request_.quiet && !request_.json)
+      for (const std::string& warning : warnings_) fmt::print(stderr, "warning: {}\n", warning);
+    if (answer.met) return io::ExitCode::done;
+    fmt::print(stderr,
+               "{}: cannot promise {} to {}, only to {}; a larger --budget goes on from the runs "
+               "made\n",
+               scene().name, quantity(), percent(request_.target), bar_text(estimate.error));
+    return io::ExitCode::numerical_failure;
+  }
+
+  void draw(const io::ResultFolder& folder, const study::Estimate& estimate) {
+    try {
+      report::accuracy_picture(work_.runs(), request_.quantity, work_.convergence(), estimate,
+                               request_.target, work_.bin())
+          .render_svg(folder.file("accuracy.svg"));
+    } catch (const report::PlotError& error) {
+      warnings_.push_back(fmt::format("accuracy.svg could not be drawn: {}", error.what()));
+    }
+  }
+
+  static std::string bar_text(double error) {
+    return std::isfinite(error) ? percent(error) : "no error bar at all (one size of cells)";
+  }
+
+  /// What summary.json calls promise: kept_to is the target, or null where it cannot be promised.
+  Json promise_of(const study::Answer& answer) const {
+    Json promise{{"kept_to", answer.met ? Json(request_.target) : Json()},
+                 {"text", promise_text(answer)}};
+    if (const auto shown = work_.shown()) {
+      promise["answers"] = shown->answers;
+      promise["held"] = shown->held;
+    }
+    return promise;
+  }
+
+  std::string promise_text(const study::Answer& answer) const {
+    if (!answer.met)
+      return fmt::format("cannot promise {}: {}", percent(request_.target),
+                         answer.reasons.empty() ? "no plan reaches it"
+                                                : fmt::format("its own runs show {}",
+                                                              bar_text(answer.estimate.error)));
+    if (const auto shown = work_.shown())
+      return fmt::format("{} of {} such answers were within 1.5 of the target", shown->held,
+                         shown->answers);
+    return "by its own runs alone";
+  }
+
+  void tell_answer(const io::ResultFolder& folder, const study::Answer& answer,
+                   double alone) const {
+    const study::Estimate& estimate = answer.estimate;
     const std::string value =
         study::is_curve(request_.quantity)
             ? fmt::format("{} ± {} (of the area under the curve)", quantity(),
-                          percent(estimate.error))
+                          bar_text(estimate.error))
             : fmt::format("{} = {:.4g} ± {:.2g} {} ({})", quantity(), estimate.value[0],
                           estimate.error * std::abs(estimate.value[0]),
-                          study::unit_of(request_.quantity), percent(estimate.error));
+                          study::unit_of(request_.quantity), bar_text(estimate.error));
     say(
-        fmt::format("  {}; nine of ten such answers are within 1.5 of it\n"
+        fmt::format("  {}; {}\n{}"
                     "  from all runs; cells of {:.4g} mm alone are about {} off\n"
                     "  {} of CPU (predicted {})\n"
                     "  {}: estimate.csv, accuracy.svg; `repose run {}` is the finest run\n",
-                    value, 1e3 * h, percent(alone), seconds_text(work_.cpu_s()),
-                    seconds_text(work_.choice().plan.cost), folder.path().string(),
-                    folder.file("advised.toml").string()));
-    if (!request_.quiet && !request_.json)
-      for (const std::string& warning : warnings_) fmt::print(stderr, "warning: {}\n", warning);
-    if (met) return io::ExitCode::done;
-    fmt::print(stderr,
-               "{}: {} is not known to {}: this scene converges more slowly than those measured; "
-               "a larger --budget goes on from the runs made\n",
-               scene().name, quantity(), percent(request_.target));
-    return io::ExitCode::numerical_failure;
+                    value, promise_text(answer),
+                    work_.choice().reasons.empty() ? not_shown(answer.reasons) : "",
+                    1e3 * work_.convergence().levels().back().h, percent(alone),
+                    seconds_text(work_.cpu_s()), seconds_text(work_.choice().plan.cost),
+                    folder.path().string(), folder.file("advised.toml").string()));
   }
 
   io::ExitCode stop_at_interrupt(const io::ResultFolder& folder) const {
@@ -204,8 +259,14 @@ class AccuracyCommand {
     return io::ExitCode::interrupted;
   }
 
-  io::ExitCode stop_at_failure(const io::ResultFolder& folder, const study::SweepRun& run) const {
+  io::ExitCode stop_at_failure(const io::ResultFolder& folder) const {
     folder.write_file("summary.json", work_.summary("failed", request_.seed).dump(2) + "\n");
+    if (work_.runs().empty()) {
+      fmt::print(stderr, "{}: the budget ended the first run; a larger --budget is needed\n",
+                 scene().name);
+      return io::ExitCode::numerical_failure;
+    }
+    const study::SweepRun& run = work_.runs().back();
     fmt::print(stderr, "{}: failed: {}\n", run.scene().name,
                run.summary.reason.empty()
                    ? fmt::format("it has no {}", study::column_of(request_.quantity))

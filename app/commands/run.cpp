@@ -133,9 +133,11 @@ Command add_run(CLI::App& root) {
   verb.option("--for", arguments->quantity,
               fmt::format("Of what (with --accuracy): {}", fmt::join(study::advised_names, ", ")),
               "QUANTITY");
-  verb.option("--budget", arguments->budget,
-              "CPU seconds that --accuracy may take; refuses beforehand what takes more",
-              "SECONDS");
+  verb.option(
+      "--budget", arguments->budget,
+      "CPU seconds that --accuracy may take: refuses beforehand what is known to take more, "
+      "and stops a run that would",
+      "SECONDS");
   verb.option("--runs", arguments->runs,
               "Where the runs of --accuracy lie; those there are not repeated (default: runs/ "
               "in the result folder)",

@@ -11,8 +11,12 @@
 namespace repose::mpm {
 namespace {
 
-/// Wave speed of a law at rest under pressure p; 0 if it has no rest state there [m/s].
-double wave_speed_under(const Material& material, double p) {
+/// A law at rest under pressure p: what limits an explicit step.
+struct AtRest {
+  double wave_speed = 0.0;   ///< 0 if it has no rest state there [m/s]
+  double diffusivity = 0.0;  ///< η/ρ of an explicit viscosity [m²/s]
+};
+AtRest at_rest_under(const Material& material, double p) {
   InitialConditions given;
   given.p = p;
   given.ocr = 1.0;
@@ -30,12 +34,20 @@ double wave_speed_under(const Material& material, double p) {
     for (std::size_t k = 0; k < at.state.size(); ++k)
       one.field[STATE + k].assign(pack_size, at.state[k]);
     one.fields = STATE + at.state.size();
-    std::array<double, pack_size> modulus{};
-    material.modulus(one.batch({0, 1}), modulus.data());
-    return std::sqrt(modulus[0] / at.density);
+    std::array<double, pack_size> modulus{}, viscosity{}, thinning{};
+    Batch batch = one.batch({0, 1});
+    material.modulus(batch, modulus.data());
+    AtRest rest{std::sqrt(modulus[0] / at.density), 0.0};
+    if (!material.law().has_stress_memory) {
+      const std::array<double, pack_size> no_strain{};
+      batch.strain.fill(no_strain.data());
+      batch.dt = 1.0;
+      material.viscosity(batch, viscosity.data(), thinning.data());
+      rest.diffusivity = viscosity[0] / at.density;
+    }
+    return rest;
   } catch (const InputError&) {
-    return 0.0;  // for instance Cam-Clay whose line is not known: the step is then that of the
-                 // start
+    return {};  // for instance Cam-Clay whose line is not known: the step is then that of the start
   }
 }
 
@@ -52,17 +64,23 @@ Estimate estimate(const Scene& scene, int threads) {
   // Fastest signal on the way: free fall through the height of the scene, and the stiffness under
   // twice the weight of the highest body (what an impact from rest brings).
   double top = 0.0;
-  double signal = 0.0;
+  double signal = 0.0, diffusivity = 0.0;
   for (const Body& body : scene.bodies) top = std::max(top, body.origin[1] + body.size[1]);
   for (const Body& body : scene.bodies) {
     const auto material = make_material(body.law);
     const double weight = simulation.diagnostics().density_max * scene.gravity * body.size[1];
-    signal = std::max(signal, wave_speed_under(*material, 2.0 * weight) +
-                                  std::hypot(body.velocity[0], body.velocity[1]));
+    const AtRest rest = at_rest_under(*material, 2.0 * weight);
+    signal = std::max(signal, rest.wave_speed + std::hypot(body.velocity[0], body.velocity[1]));
+    diffusivity = std::max(diffusivity, rest.diffusivity);
   }
   signal += std::sqrt(2.0 * scene.gravity * top);
-  const double wave_step = scene.courant * scene.h / signal;
-  const double typical = scene.dt ? *scene.dt : std::min(e.first_dt_s, wave_step);
+  e.wave_dt_s = std::min(e.first_dt_s, scene.courant * scene.h / signal);
+  if (diffusivity > 0.0 && scene.viscosity == Viscosity::explicit_force)
+    e.viscous_dt_s = stable_step(
+        {0.0, 0.0,
+         2.0 * static_cast<double>(scene.dimensions()) * diffusivity / (scene.h * scene.h)},
+        scene.courant, scene.h);
+  const double typical = scene.dt ? *scene.dt : std::min(e.wave_dt_s, e.viscous_dt_s);
   e.steps = scene.end_time / typical;
 
   // a few real steps, for at most half a second

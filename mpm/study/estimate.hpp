@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -13,7 +14,11 @@ struct Estimate {
   std::int64_t points = 0;
   std::int64_t live_cells = 0;  ///< at the start
   double first_dt_s = 0.0;
-  double steps = 0.0;  ///< end_time over a typical step (fastest signal expected on the way)
+  /// Longest steps expected on the way [s]: by the fastest signal, which goes with h, and by an
+  /// explicit viscosity, which goes with h² (HUGE_VAL where nothing is viscous or the solve is
+  /// implicit). A fixed step is neither.
+  double wave_dt_s = HUGE_VAL, viscous_dt_s = HUGE_VAL;
+  double steps = 0.0;  ///< end_time over a typical step: the shorter of the two, or the fixed one
   double memory_MB = 0.0;
   double seconds = 0.0;  ///< wall time with `threads`
   std::vector<std::string> warnings;

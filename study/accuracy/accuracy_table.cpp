@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/accuracy/trained_domain.hpp"
+
 namespace repose::study {
 namespace {
 
@@ -48,13 +50,10 @@ ErrorModel error_form(Quantity q) {
   return model;
 }
 
-std::vector<Candidate> candidates_for(const mpm::Scene& scene, Quantity q, bool& measured) {
+std::vector<Candidate> candidates_for(const mpm::Scene& scene, Quantity q) {
   std::vector<Candidate> candidates;
-  measured = true;
   for (const mpm::Body& body : scene.bodies) {
-    const bool known = std::any_of(rows.begin(), rows.end(),
-                                   [&](const Row& row) { return row.law == body.law.name; });
-    measured = measured && known;
+    const bool known = is_charted(body.law);
     for (const Row& row : rows) {
       if (row.quantity != q || (known && row.law != body.law.name)) continue;
       const auto found = std::find_if(
@@ -76,6 +75,8 @@ std::vector<Candidate> candidates_for(const mpm::Scene& scene, Quantity q, bool&
       found->model.scatter = std::max(found->model.scatter, row.scatter);
     }
   }
+  if (scene.dimensions() == 3)
+    for (Candidate& candidate : candidates) candidate.courant *= space_share;
   return candidates;
 }
 
@@ -92,11 +93,13 @@ mpm::Scene scene_with(mpm::Scene scene, const Candidate& candidate, double h, in
 }
 
 std::vector<double> sizes_for(const mpm::Scene& scene, double most_points) {
-  double area = 0.0, narrowest = HUGE_VAL;
+  const bool in_space = scene.dimensions() == 3;
+  double volume = 0.0, narrowest = HUGE_VAL;  // per metre of depth in the plane
   for (const mpm::Body& body : scene.bodies) {
-    area += body.size[0] * body.size[1];
+    volume += body.size[0] * body.size[1] * (in_space ? body.size[2] : 1.0);
     const double ring = body.disc ? 2.0 * (body.disc->radius - body.disc->hole) : HUGE_VAL;
     narrowest = std::min({narrowest, body.size[0], body.size[1], ring});
+    if (in_space) narrowest = std::min(narrowest, body.size[2]);
   }
   const auto divides = [&](double h) {
     mpm::Scene other = scene;
@@ -111,7 +114,9 @@ std::vector<double> sizes_for(const mpm::Scene& scene, double most_points) {
   };
   std::vector<double> sizes{scene.h};
   while (divides(2.0 * sizes.front())) sizes.insert(sizes.begin(), 2.0 * sizes.front());
-  const auto points = [&](double h) { return scene.points_per_cell * area / (h * h); };
+  const auto points = [&](double h) {
+    return scene.points_per_cell * volume / std::pow(h, in_space ? 3 : 2);
+  };
   while (points(0.5 * sizes.back()) <= most_points) sizes.push_back(0.5 * sizes.back());
   // between one size and half of it, which takes 8 times as long, those that take 2 and 3.4 times
   std::vector<double> all;

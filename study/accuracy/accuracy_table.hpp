@@ -22,9 +22,12 @@ struct Candidate {
 ErrorModel error_form(Quantity q);
 
 /// The measured ways to run scenes of these laws; of several bodies' laws, the largest constants
-/// count. `measured` becomes false where a law has none of its own: the largest of all laws then
-/// stand in.
-std::vector<Candidate> candidates_for(const mpm::Scene& scene, Quantity q, bool& measured);
+/// and the shortest step count. Where a law, or its form, has none of its own, those of all laws
+/// stand in: enough to plan with, not to promise (trained_domain.hpp). In space steps are
+/// space_share times as long.
+std::vector<Candidate> candidates_for(const mpm::Scene& scene, Quantity q);
+/// √(2/3), by which what is stable in space is shorter (mpm/step/step_size.hpp).
+inline constexpr double space_share = 0.816;
 
 /// The scene run so, with cells of h; of a few runs of the same, the k-th: steps differ by 4 %
 /// each.

@@ -59,8 +59,7 @@ double Convergence::motion() const {
   return motion_of(levels_.back().mean(), *start_);
 }
 
-double Convergence::bias_at(double h) const {
-  if (levels_.empty()) return model_.expected_bias(h / length_, motion());
+std::pair<double, double> Convergence::shown_square() const {
   const Resolution& f = levels_.back();
   const auto noise = [&](const Resolution& level) {
     return squared(scatter_at(level.h)) / static_cast<double>(level.runs.size());
@@ -75,9 +74,22 @@ double Convergence::bias_at(double h) const {
                (squared(x - 1.0) + squared(model_.irregularity) * (x * x + 1.0));
     count += 1.0;
   }
+  return {count > 0.0 ? squares / count : 0.0, count};
+}
+
+double Convergence::shown_over_expected() const {
+  if (levels_.empty()) return 0.0;
+  return std::sqrt(shown_square().first) /
+         model_.expected_bias(levels_.back().h / length_, motion());
+}
+
+double Convergence::bias_at(double h) const {
+  if (levels_.empty()) return model_.expected_bias(h / length_, motion());
+  const Resolution& f = levels_.back();
+  const auto [square, count] = shown_square();
   const double expected = model_.expected_bias(f.h / length_, motion());
   if (count == 0.0) return expected * std::pow(h / f.h, model_.order);
-  const double shown = std::max(std::sqrt(squares / count), least_shown * expected);
+  const double shown = std::max(std::sqrt(square), least_shown * expected);
   const double share = model_pairs / (model_pairs + count);
   return std::pow(expected, share) * std::pow(shown, 1.0 - share) * std::pow(h / f.h, model_.order);
 }
@@ -216,27 +228,6 @@ Plan cheapest_plan(const Convergence& so_far, const std::vector<double>& sizes,
     }
   }
   return !best.levels.empty() ? best : !nearest.levels.empty() ? nearest : cheapest;
-}
-
-Outcome run_to_target(Convergence& so_far, const std::vector<double>& sizes,
-                      const std::vector<double>& seconds, double target, double budget,
-                      const std::function<std::optional<VectorXd>(const Level&)>& run) {
-  for (;;) {
-    const std::vector<Resolution>& have = so_far.levels();
-    if (have.size() >= 2 && so_far.estimate().error <= target) return Outcome::met;
-    const Plan plan = cheapest_plan(so_far, sizes, seconds, target, budget);
-    if (have.size() >= 2 && (plan.error > target || plan.cost > budget))
-      return Outcome::out_of_reach;
-    Level next{};
-    for (std::size_t k = 0; k < plan.levels.size(); ++k) {
-      const int made = k < have.size() ? static_cast<int>(have[k].runs.size()) : 0;
-      next = {plan.levels[k].h, made};
-      if (made < plan.levels[k].runs) break;
-    }
-    std::optional<VectorXd> value = run(next);
-    if (!value) return Outcome::stopped;
-    so_far.add(next.h, std::move(*value));
-  }
 }
 
 }  // namespace repose::study

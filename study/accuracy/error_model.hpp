@@ -3,8 +3,8 @@
 /// How far runs with finite cells are from what they tend to: a model with few constants, and what
 /// the runs of a scene themselves say. It predicts the error of an estimate before it is made.
 
-#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "study/accuracy/richardson.hpp"
@@ -70,6 +70,12 @@ class Convergence {
   Estimate estimate() const;
   /// B: the relative error that runs with cells of h are expected to have, scatter aside.
   double bias_at(double h) const;
+  /// The bias that the pairs of sizes show, over the one that the model alone expects; 0 where
+  /// there are none.
+  double shown_over_expected() const;
+  /// Standard deviation of one run with cells of h, relative: the model's, scaled by the scatter
+  /// seen.
+  double scatter_at(double h) const;
 
  private:
   struct Weighted {
@@ -79,7 +85,8 @@ class Convergence {
   Weighted best_weights(const std::vector<Level>& levels) const;
   /// m of the finest run so far.
   double motion() const;
-  double scatter_at(double h) const;
+  /// Mean square of the biases that the pairs show at the finest size, and their number.
+  std::pair<double, double> shown_square() const;
 
   ErrorModel model_;
   double length_;
@@ -117,17 +124,5 @@ struct Plan {
 Plan cheapest_plan(const Convergence& so_far, const std::vector<double>& sizes,
                    const std::vector<double>& seconds, double target, double budget,
                    int most_runs = 8);
-
-enum class Outcome {
-  met,           ///< the error bar meets the target
-  out_of_reach,  ///< no plan within the budget does
-  stopped,       ///< a run gave nothing
-};
-/// Runs the cheapest plan, made anew after every run, until the error bar of at least two sizes
-/// meets `target`. run(level) makes one run with cells of level.h, of which there are level.runs
-/// so far; it may change `seconds` on the way.
-Outcome run_to_target(Convergence& so_far, const std::vector<double>& sizes,
-                      const std::vector<double>& seconds, double target, double budget,
-                      const std::function<std::optional<Eigen::VectorXd>(const Level&)>& run);
 
 }  // namespace repose::study

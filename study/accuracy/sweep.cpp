@@ -274,7 +274,8 @@ std::optional<SweepChange> change_when_quartered(const SweepSeries& series) {
   return worst;
 }
 
-io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool resume) {
+io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool resume,
+                       double cpu_limit_s) {
   RunRequest request;
   request.file = run.file;
   request.file.notes.clear();
@@ -283,6 +284,7 @@ io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool 
   request.folder = folder / run.scene().name;
   request.threads = threads;
   request.quiet = true;
+  request.cpu_limit_s = cpu_limit_s;
   const std::string there = noted_status(request.folder / "summary.json");
   const std::string text = text_of(request.folder / "input.toml");
   const bool same = !text.empty() && after_version(text) == after_version(request.input);

@@ -3,6 +3,7 @@
 /// Many runs of one scene that differ in transfer, kernel, points per cell, cell size and step, and
 /// what their results say of the step's influence.
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <span>
@@ -95,9 +96,9 @@ std::optional<SweepChange> change_when_quartered(const SweepSeries& series);
 /// Runs it as `repose run` would, in folder/NAME. What lies there already is not repeated if it
 /// came to its end (or failed) from the same input (its text is compared, not a hash of it) by the
 /// same solver (solver_digest of repose_version.hpp), be it of another version of repose; with
-/// `resume`, an interrupted run goes on from its checkpoint. Returns interrupted if it was; a run
-/// that failed is kept as such. Errors: IoError.
-io::ExitCode carry_out(SweepRun& run, const std::filesystem::path& folder, int threads,
-                       bool resume);
+/// `resume`, an interrupted run goes on from its checkpoint. Returns interrupted if it was, or
+/// stopped by cpu_limit_s; a run that failed is kept as such. Errors: IoError.
+io::ExitCode carry_out(SweepRun& run, const std::filesystem::path& folder, int threads, bool resume,
+                       double cpu_limit_s = HUGE_VAL);
 
 }  // namespace repose::study

@@ -215,7 +215,8 @@ io::ExitCode Run::advance() {
       write_checkpoint_if_due();
       const bool end = simulation_.time() >= scene_.end_time;
       progress.update(simulation_.time(), simulation_.steps(), simulation_.point_steps(), end);
-      if (interrupt.requested() && !end) {
+      const bool spent = usage().cpu_s - begun_.cpu_s > request_.cpu_limit_s;
+      if ((interrupt.requested() || spent) && !end) {
         progress.clear();
         return stop_at_interrupt();
       }

@@ -2,6 +2,7 @@
 /// \file
 /// One run of a scene: the simulation, its result folder and what is said meanwhile.
 
+#include <cmath>
 #include <functional>
 
 #include "input/read_scene.hpp"
@@ -23,6 +24,8 @@ struct RunRequest {
   std::function<bool(const input::SceneFile&, const mpm::Simulation&,
                      const std::filesystem::path& file)>
       picture{};
+  /// CPU seconds after which it stops as if interrupted, with a checkpoint
+  double cpu_limit_s = HUGE_VAL;
   bool quiet = false;  ///< nothing but errors
   bool json = false;   ///< progress and outcome as JSON lines
 };

@@ -9,8 +9,10 @@
 
 #include "app/command_line.hpp"
 #include "io/json.hpp"
-#include "study/accuracy/accuracy_table.hpp"
+#include "study/accuracy/accurate_run.hpp"
 #include "study/accuracy/errors.hpp"
+#include "study/accuracy/trained_domain.hpp"
+#include "study/run/run_record.hpp"
 #include "tests/app/csv_table.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -73,7 +75,16 @@ TEST_F(Accuracy, RunsCoarseAndFineAndGivesAnErrorBar) {
   EXPECT_GT(s["runs"][0]["h_m"].get<double>(), 1.9 * s["runs"].back()["h_m"].get<double>());
   EXPECT_GT(s["predicted"]["cpu_s"].get<double>(), 0.0);
   EXPECT_NE(text_.find("predicted: cells of "), std::string::npos) << text_;
-  EXPECT_NE(text_.find("nine of ten such answers are within 1.5 of it"), std::string::npos)
+  EXPECT_EQ(s["basis"], "measured");
+  EXPECT_TRUE(s["reasons"].empty());
+  // the row of rehearsed_rows.inc that counts: the largest target not above 0.2
+  const auto shown = rehearsed("mu_i", "elastoviscoplastic", Quantity::kinetic, 0.2);
+  ASSERT_TRUE(shown && shown->shown());
+  EXPECT_EQ(s["promise"]["answers"], shown->answers);
+  EXPECT_EQ(s["promise"]["held"], shown->held);
+  EXPECT_NE(text_.find(fmt::format("{} of {} such answers were within 1.5 of the target",
+                                   shown->held, shown->answers)),
+            std::string::npos)
       << text_;
   for (const char* file : {"input.toml", "accuracy.csv", "estimate.csv", "advised.toml"})
     EXPECT_TRUE(fs::exists(base_ / "a" / file)) << file;
@@ -101,8 +112,7 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
   const io::Json s = summary("a");
   input::InputFile file = input::InputFile::read(scene_);
   const mpm::Scene scene = input::read_scene(file).scene;
-  bool measured = false;
-  const auto candidates = candidates_for(scene, Quantity::kinetic, measured);
+  const auto candidates = candidates_for(scene, Quantity::kinetic);
   const auto used = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
     return mpm::name_of(c.kernel) == s["kernel"].get<std::string>() &&
            mpm::name_of(c.transfer) == s["transfer"].get<std::string>() &&
@@ -136,14 +146,63 @@ TEST_F(Accuracy, TheErrorBarIsThatOfItsRunsAndTrue) {
 }
 
 TEST_F(Accuracy, RefusesBeforehandWhatTheBudgetDoesNotBuy) {
-  const std::string text = complaint({"--accuracy", "0.01", "--for", "kinetic", "--budget", "0.5"});
-  EXPECT_EQ(text.find("kinetic to 1 % needs about "), 0u) << text;
-  EXPECT_NE(text.find("more than the budget of 0.5 s; within it, about "), std::string::npos)
+  const std::string text = complaint(
+      {"--accuracy", "0.02", "--for", "kinetic", "--budget", "0.2", "--set", "scene.end_time=0.5"});
+  EXPECT_EQ(text.find("kinetic to 2 % needs about "), 0u) << text;
+  EXPECT_NE(text.find("more than the budget of 0.2 s; within it, about "), std::string::npos)
       << text;
   const std::size_t advice = text.find(": --accuracy ");
   ASSERT_NE(advice, std::string::npos) << text;
-  EXPECT_GT(std::stod(text.substr(advice + 13)), 0.01) << text;
+  EXPECT_GT(std::stod(text.substr(advice + 13)), 0.02) << text;
   EXPECT_NE(text.find("; or --budget "), std::string::npos) << text;
+}
+
+// The paper's column at its own 1.2 s, longer than any training scene: 2 % of its energy take cells
+// of 3 mm and less, half a minute. With half a second it says what its coarse runs show, and that
+// this is not what was asked for. The last run may be under way when the budget ends; it is stopped
+// at its next step, of which the smallest here takes 2 ms at most.
+TEST_F(Accuracy, ABudgetEndsRunsAndLeavesTheBestAnswer) {
+  ASSERT_EQ(run({"run", scene_, "--accuracy", "0.02", "--for", "kinetic", "--budget", "0.5"}, "a"),
+            3)
+      << error_;
+  const io::Json s = summary("a");
+  EXPECT_EQ(s["status"], "done");
+  EXPECT_EQ(s["met"], false);
+  EXPECT_EQ(s["basis"], "own runs");
+  EXPECT_EQ(s["reasons"][0].get<std::string>().find("an end time over sqrt(H/g) of 5.94"), 0u);
+  EXPECT_TRUE(s["promise"]["kept_to"].is_null());
+  EXPECT_GT(s["error_bar"].get<double>(), 0.02);
+  EXPECT_LE(s["cpu_s"].get<double>(), 0.5 + 0.1);
+  EXPECT_GE(s["runs"].size(), 2u);
+  EXPECT_NE(text_.find("not shown for an end time over sqrt(H/g) of 5.94"), std::string::npos)
+      << text_;
+  EXPECT_NE(error_.find("cannot promise kinetic to 2 %, only to "), std::string::npos) << error_;
+}
+
+// A run that alone takes more than the budget is stopped on its way.
+TEST_F(Accuracy, ARunIsStoppedWhereItsLimitIs) {
+  input::InputFile file = input::InputFile::read(scene_);
+  const input::SceneFile scene = input::read_scene(file);
+  SweepRun long_run = run_of(scene, scene.scene);  // 10 s of CPU
+  const double begun = usage().cpu_s;
+  EXPECT_EQ(carry_out(long_run, base_ / "runs", 1, false, 0.2), io::ExitCode::interrupted);
+  EXPECT_LT(usage().cpu_s - begun, 1.0) << "0.2 s, the start and the checkpoint";
+  EXPECT_FALSE(long_run.done());
+}
+
+// Explicit, the regularised column would take 7e8 steps at h = 6 mm and less
+// (implicit_viscosity.md).
+TEST_F(Accuracy, ViscosityThatBoundsTheStepIsSolvedFor) {
+  AccuracyGoal goal;
+  input::InputFile file =
+      input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/flat_mu_i_regularised.toml");
+  goal.file = input::read_scene(file);
+  goal.quantity = Quantity::kinetic;
+  goal.target = 0.05;
+  const AccurateRun work(goal);
+  EXPECT_TRUE(work.made_implicit());
+  EXPECT_EQ(work.scene().viscosity, mpm::Viscosity::implicit_solve);
+  EXPECT_EQ(work.choice().reasons.front(), "an implicit viscosity");
 }
 
 TEST_F(Accuracy, SaysWhatIsWrong) {
@@ -167,9 +226,8 @@ TEST(AccuracyTable, EveryLawHasConstants) {
         input::InputFile::read(fmt::format("{}/data/scenes/{}.toml", REPOSE_SOURCE_DIR, name));
     const mpm::Scene scene = input::read_scene(file).scene;
     for (std::size_t q = 0; q < advised_names.size(); ++q) {
-      bool measured = false;
-      const auto candidates = candidates_for(scene, static_cast<Quantity>(q), measured);
-      EXPECT_TRUE(measured) << name;
+      const auto candidates = candidates_for(scene, static_cast<Quantity>(q));
+      EXPECT_TRUE(is_charted(scene.bodies.front().law)) << name;
       ASSERT_FALSE(candidates.empty()) << name << " " << quantity_names[q];
       for (const Candidate& c : candidates) {
         EXPECT_GT(c.model.bias, 0.0);

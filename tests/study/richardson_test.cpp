@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "study/accuracy/decision.hpp"
 #include "study/accuracy/error_model.hpp"
 
 namespace repose::study {
@@ -190,13 +191,13 @@ TEST(ErrorModel, PlansBuyTheCheaperOfCellsAndRuns) {
 }
 
 /// What the decision makes of a quantity: runs are made up until the error bar meets the target.
-struct Answer {
+struct Reached {
   double error, cost;
   double bar;         ///< error bar at the end
   double bar_before;  ///< before the last run; none of less than two sizes
 };
 template <class F>
-Answer answer_for(const F& value, const ErrorModel& model, double target) {
+Reached answer_for(const F& value, const ErrorModel& model, double target) {
   std::vector<double> sizes, seconds;
   for (double h = 0.2; h > 5e-4; h *= 0.5)
     for (const double part : {1.0, 0.8, 2.0 / 3.0}) sizes.push_back(part * h);
@@ -204,7 +205,7 @@ Answer answer_for(const F& value, const ErrorModel& model, double target) {
   Convergence so_far(model, 1.0);
   double cost = 0.0, bar_before = HUGE_VAL;
   const Outcome outcome =
-      run_to_target(so_far, sizes, seconds, target, HUGE_VAL, [&](const Level& next) {
+      run_to_target(so_far, {target, HUGE_VAL, {}}, sizes, seconds, [&](const Level& next) {
         if (so_far.levels().size() >= 2) bar_before = so_far.estimate().error;
         cost += std::pow(0.2 / next.h, 3);
         return std::optional(VectorXd::Constant(1, value(next.h)).eval());
@@ -223,7 +224,7 @@ TEST(ErrorModel, RegularErrorsAreMetWithinThreeTimesTheCheapestCost) {
     for (const double b : {0.8, 1.0, 1.25})
       for (const double target : {0.01, 0.03}) {
         const auto value = [&](double h) { return 1.0 + b * std::pow(h, p); };
-        const Answer answer =
+        const Reached answer =
             answer_for(value, {.bias = 1.0, .irregularity = 0.3, .scatter = 1e-4}, target);
         const double cheapest = std::pow(0.2 / std::min(0.2, std::pow(target / b, 1.0 / p)), 3);
         EXPECT_LE(answer.error, 1.5 * target) << p << " " << b << " " << target;
@@ -244,7 +245,7 @@ TEST(ErrorModel, ScatterIsAveragedUntilTheTargetIsMet) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> scatter(0.0, 0.01);
     const auto value = [&](double h) { return 1.0 + h + scatter(random); };
-    const Answer answer =
+    const Reached answer =
         answer_for(value, {.bias = 1.0, .irregularity = 0.1, .scatter = 0.01}, target);
     if (answer.error <= 1.5 * target) ++met;
   }
@@ -257,10 +258,11 @@ TEST(ErrorModel, RunsEndWhereNoPlanMeetsTheTarget) {
     return std::optional(VectorXd::Constant(1, 1.0 + next.h).eval());
   };
   Convergence poor(typical, 1.0);
-  EXPECT_EQ(run_to_target(poor, sizes, seconds, 1e-4, HUGE_VAL, value), Outcome::out_of_reach);
+  EXPECT_EQ(run_to_target(poor, {1e-4, HUGE_VAL, {}}, sizes, seconds, value),
+            Outcome::out_of_reach);
   EXPECT_GE(poor.levels().size(), 2u) << "there is an estimate";
   Convergence broken(typical, 1.0);
-  EXPECT_EQ(run_to_target(broken, sizes, seconds, 0.05, HUGE_VAL,
+  EXPECT_EQ(run_to_target(broken, {0.05, HUGE_VAL, {}}, sizes, seconds,
                           [](const Level&) { return std::optional<VectorXd>(); }),
             Outcome::stopped);
   EXPECT_TRUE(broken.levels().empty());
