@@ -181,6 +181,11 @@ class LawMaterial final : public Material {
     for (std::size_t k = 0; k < L::state.size(); ++k)
       point.state[k].store_unaligned(batch.state[k] + i);
     inc.density.store_unaligned(batch.density + i);
+    // where the law can have but one of the two, the batch has no room for the other
+    if constexpr (L::has_stress_memory)
+      spent.plastic = spent.plastic + spent.viscous;
+    else
+      spent.viscous = spent.viscous + spent.plastic;
     if (batch.work != nullptr) work.store_unaligned(batch.work + i);
     if (batch.plastic != nullptr) spent.plastic.store_unaligned(batch.plastic + i);
     if (batch.viscous != nullptr) spent.viscous.store_unaligned(batch.viscous + i);

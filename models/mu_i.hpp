@@ -71,12 +71,6 @@ T elastic_volume_strain(const P& par, const T& p) {
   return -log(T(1.0) + p / par.K);
 }
 
-/// Work of the mean pressure over the part of a step's strain during which ρ < ρ_0.
-template <class P, class T, int N>
-T separation(const P& par, const T& p_n, const T& p, const Increment<T, N>& inc) {
-  return T(-0.5) * (p_n + p) * strain_apart(inc.density, par.rho_0, trace(inc.strain));
-}
-
 template <class P>
 double density_at(const P& par, double p) {
   return par.rho_0 * (1.0 + p / par.K);
@@ -178,12 +172,12 @@ struct MuIElastoviscoplastic {
     if (spent != nullptr) {
       // Δe^p = (γ̇_pΔt/2τ_tr) s_tr with Gγ̇_pΔt = τ_tr − τ, along the return; s_{n+1} = (τ/τ_tr) s_tr
       const T quarter = T(0.25) / P.G;
-      const T trial2 = T(2.0) * square(tau_trial);
-      spent->plastic = quarter * (T(1.0) - ratio) * (contract(s_n, s_trial) + ratio * trial2);
-      // |s|²/4G is energy per volume, and the volume changes: ψ_s dε_v, though nothing works
-      spent->hypoelastic =
-          T(-0.5) * quarter * (contract(s_n, s_n) + square(ratio) * trial2) * trace(inc.strain);
-      spent->separation = mu_i::separation(P, pressure(stress), p, inc);
+      const T turned = contract(s_n, s_trial);
+      spent->plastic = quarter * (T(1.0) - ratio) * (turned + ratio * (T(2.0) * square(tau_trial)));
+      // |s|²/4G is energy per volume, and the volume changes: ψ_s dε_v, though nothing works. For
+      // the mean of |s|² over the step s_n:s_{n+1}.
+      spent->hypoelastic = -quarter * ratio * turned * trace(inc.strain);
+      spent->separation = work_over_gap(P.rho_0, stress, p, inc);
     }
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
     return failed;
@@ -321,7 +315,7 @@ struct Viscous {
     if (spent != nullptr) {
       // all of the deviator is viscous: ½(s_n + s_{n+1}):Δe
       spent->viscous = T(0.5) * contract(deviator(stress) + viscous, inc.strain);
-      spent->separation = mu_i::separation(P, pressure(stress), p, inc);
+      spent->separation = work_over_gap(P.rho_0, stress, p, inc);
     }
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
     return failed;

@@ -63,9 +63,7 @@ struct Newtonian {
     if (spent != nullptr) {
       // all of the deviator is viscous: ½(s_n + s_{n+1}):Δe
       spent->viscous = T(0.5) * contract(deviator(stress) + viscous, inc.strain);
-      if (tension == Tension::cut_off)
-        spent->separation = T(-0.5) * (pressure(stress) + p) *
-                            strain_apart(inc.density, P.rho_0, trace(inc.strain));
+      if (tension == Tension::cut_off) spent->separation = work_over_gap(P.rho_0, stress, p, inc);
     }
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
     return failed;

@@ -158,8 +158,7 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   std::array<double*, dim == 2 ? 1 : 3> spin;
   for (double*& component : spin) component = array();
   double* const work = array();
-  double* const plastic = array();
-  double* const viscous_work = array();
+  double* const dissipated = array();
   double* const hypoelastic = array();
   double* const separation = array();
   double* const modulus = array();
@@ -190,9 +189,8 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   for (std::size_t i = 0; i < e.size(); ++i) batch.strain[i] = e[i];
   for (std::size_t i = 0; i < spin.size(); ++i) batch.spin[i] = spin[i];
   batch.work = work;
-  batch.plastic = plastic;
-  batch.viscous = viscous_work;
-  batch.hypoelastic = hypoelastic;
+  (follows_rate ? batch.viscous : batch.plastic) = dissipated;
+  if (!follows_rate) batch.hypoelastic = hypoelastic;
   batch.separation = separation;
   batch.modulus = modulus;
   const bool viscous = !points.material->law().has_stress_memory && !points.splits_stress();
@@ -252,7 +250,7 @@ void Simulation::Impl<dim>::hold_density(PointsOf<dim>& points, const SlotRange&
     const Pack smaller = kept / now;
     for (double* const energy :
          {batch.work, batch.plastic, batch.viscous, batch.hypoelastic, batch.separation})
-      (smaller * Pack::load_aligned(energy + k)).store_aligned(energy + k);
+      if (energy != nullptr) (smaller * Pack::load_aligned(energy + k)).store_aligned(energy + k);
     if (averages()) (smaller * Pack::load_aligned(averaging + k)).store_aligned(averaging + k);
   }
   sums.held += static_cast<std::int64_t>(xsimd::hadd(held));
@@ -270,7 +268,8 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
   for (std::size_t i = 0; i < dim; ++i) g[i] = Pack(gravity[i]);
   const Pack viscous_factor(2.0 * dim / (grid.h() * grid.h()));
   Pack kinetic(0.0), work(0.0), power(0.0);
-  Pack plastic(0.0), viscous(0.0), hypoelastic(0.0), separation(0.0), averaging(0.0);
+  const double* const of_law = follows_rate ? batch.viscous : batch.plastic;
+  Pack dissipated(0.0), hypoelastic(0.0), separation(0.0), averaging(0.0);
   Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const auto at = [&](std::size_t f) {
@@ -289,9 +288,9 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
     // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
     const Pack volume = m * inv_rho * (one - half * strain_v);
     work = work + volume * Pack::load_aligned(batch.work + k);
-    plastic = plastic + volume * Pack::load_aligned(batch.plastic + k);
-    viscous = viscous + volume * Pack::load_aligned(batch.viscous + k);
-    hypoelastic = hypoelastic + volume * Pack::load_aligned(batch.hypoelastic + k);
+    dissipated = dissipated + volume * Pack::load_aligned(of_law + k);
+    if (!follows_rate)
+      hypoelastic = hypoelastic + volume * Pack::load_aligned(batch.hypoelastic + k);
     separation = separation + volume * Pack::load_aligned(batch.separation + k);
     if (averages()) averaging = averaging + volume * Pack::load_aligned(motion.elastic + k);
     std::array<Pack, F::gradient> L;
@@ -310,8 +309,7 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
   }
   sums.kinetic += xsimd::hadd(kinetic);
   sums.work += xsimd::hadd(work);
-  sums.plastic += xsimd::hadd(plastic);
-  sums.viscous += xsimd::hadd(viscous);
+  (follows_rate ? sums.viscous : sums.plastic) += xsimd::hadd(dissipated);
   sums.hypoelastic += xsimd::hadd(hypoelastic);
   sums.separation += xsimd::hadd(separation);
   sums.averaging += xsimd::hadd(averaging);
