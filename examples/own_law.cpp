@@ -32,10 +32,14 @@ struct PowerLawFluid : LawDefaults {  // LawDefaults: one form, no state variabl
     return P.k * exp(T(0.5) * (P.n - T(1.0)) * log(g2));
   }
   template <class T, int N>  // one step, in place; returns where it failed (select() instead of if)
-  static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& s, State<T>&) {
+  static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& s, State<T>&,
+                        StepWork<T>* spent = nullptr) {
     const T per_dt = select(inc.dt > T(0.0), T(T(1.0) / inc.dt), T(0.0));
     const Sym<T, N> D = per_dt * deviator(inc.strain);
+    const Sym<T, N> before = deviator(s);
     s = T(2.0) * viscosity(P, s, inc.density, D) * D;
+    if (spent != nullptr)  // where the work goes that is not stored
+      spent->viscous = T(0.5) * contract(before + s, inc.strain);
     for (int i = 0; i < 3; ++i) s[i] = s[i] - P.K * (inc.density / P.rho_0 - T(1.0));
     return !repose::finite(T(contract(s, s)));
   }

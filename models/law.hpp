@@ -30,6 +30,23 @@ struct Increment {
   T density;         ///< ρ at the end of the step [kg/m³]; at its start it was ρ exp(tr Δε)
 };
 
+/// Where the work of a step goes that no state function holds, per mean volume of the step [J/m³]:
+///   ½(σ_n + σ_{n+1}):Δε = change of the stored energy + plastic + viscous + hypoelastic +
+///   separation
+/// up to the error of the step. Each is an integral of its own, from what the law's update has
+/// found, by the rule by which the work itself is counted: the mean of the stresses before and
+/// after. Derived in physics.md, "Where the work goes".
+template <class T>
+struct StepWork {
+  T plastic = T(0.0);  ///< ½(σ_n + σ_{n+1}):Δε^p with the Δε^p of the update's own flow rule
+  T viscous = T(0.0);  ///< ½(s_n + s_{n+1}):Δe of a viscous stress s = 2ηD′
+  /// Elastic work that has no potential, ∫ ψ_s (d ln G + dε_v) + …; may have either sign
+  T hypoelastic = T(0.0);
+  /// What a step that makes or loses contact does without: work of the mean stress over the part of
+  /// the strain that meets none, and stored energy that is dropped with the stress. Either sign
+  T separation = T(0.0);
+};
+
 /// Which branch of an elastoplastic rate is meant. The integrator decides, never the law, so that a
 /// right-hand side is smooth between two located yield events.
 enum class Branch : std::uint8_t { elastic, plastic };
@@ -85,9 +102,11 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 ///                                    parameters (κ < λ); throws InputError
 ///   Params<T>::from(span<T>)         parameter vector → named values
 ///   State<T>                         state variables, convertible to and from an array
-///   update(P, increment, σ, state)   advances one step in place; returns the mask of points that
-///                                    could not be integrated (they are left as they were)
+///   update(P, increment, σ, state, spent)  advances one step in place; returns the mask of points
+///                                    that could not be integrated (they are left as they were).
+///                                    `spent`, a StepWork of zeros, is null where nobody asks
 ///   rate(P, σ, state, ρ, D, branch, dσ/dt, dstate/dt)
+///   hypoelastic_power(P, σ, state, ρ, D, dσ/dt)  rate of StepWork::hypoelastic [W/m³]
 ///   yield(P, σ, state, ρ, D)         < 0 elastic, 0 at yield [Pa]; −∞ where a law has no yield
 ///   modulus(P, σ, state, ρ)          P-wave modulus ρc² [Pa]
 ///   viscosity(P, σ, ρ, D)            shear viscosity that limits an explicit step [Pa·s]
@@ -100,7 +119,8 @@ template <class L>
 concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
                                    const Increment<double, 4>& inc, Sym<double, 4>& stress,
                                    typename L::template State<double>& state, double x,
-                                   std::vector<double>& theta, const InitialConditions& given) {
+                                   StepWork<double>* spent, std::vector<double>& theta,
+                                   const InitialConditions& given) {
   { L::name } -> std::convertible_to<std::string_view>;
   { L::option_key } -> std::convertible_to<std::string_view>;
   { L::option } -> std::convertible_to<std::string_view>;
@@ -111,7 +131,9 @@ concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
   { L::iterates } -> std::convertible_to<bool>;
   {L::complete(theta)};
   { L::update(P, inc, stress, state) } -> std::same_as<bool>;
+  { L::update(P, inc, stress, state, spent) } -> std::same_as<bool>;
   {L::rate(P, stress, state, x, stress, Branch::elastic, stress, state)};
+  { L::hypoelastic_power(P, stress, state, x, stress, stress) } -> std::same_as<double>;
   { L::yield(P, stress, state, x, stress) } -> std::same_as<double>;
   { L::modulus(P, stress, state, x) } -> std::same_as<double>;
   { L::viscosity(P, stress, x, stress) } -> std::same_as<double>;
@@ -121,7 +143,8 @@ concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
   { L::initial(P, given) } -> std::same_as<InitialPoint>;
 };
 
-/// For a law to inherit: one form, no state variables, no condition between parameters, no yield.
+/// For a law to inherit: one form, no state variables, no condition between parameters, no yield,
+/// and all elastic work stored.
 struct LawDefaults {
   static constexpr std::string_view option_key = "";
   static constexpr std::string_view option = "";
@@ -130,6 +153,11 @@ struct LawDefaults {
   template <class T>
   using State = std::array<T, 0>;
   static void complete(std::vector<double>&) {}
+  template <class P, class T, class S, int N>
+  static T hypoelastic_power(const P&, const Sym<T, N>&, const S&, const T&, const Sym<T, N>&,
+                             const Sym<T, N>&) {
+    return T(0.0);
+  }
   template <class P, class T, class S, int N>
   static T yield(const P&, const Sym<T, N>&, const S&, const T&, const Sym<T, N>&) {
     return T(-std::numeric_limits<double>::infinity());

@@ -159,7 +159,8 @@ class LawMaterial final : public Material {
             {load<T>(batch.spin[0] + i), load<T>(batch.spin[1] + i), load<T>(batch.spin[2] + i)});
     }
     const Sym<T, N> before = point.stress;
-    auto failed = L::update(P, inc, point.stress, point.state);
+    StepWork<T> spent;
+    auto failed = L::update(P, inc, point.stress, point.state, &spent);
     failed = failed || !(inc.dt >= zero) || !(inc.density > zero) || !finite(inc.density) ||
              !finite(contract(before, before));
     T work = T(0.5) * contract(before + point.stress, inc.strain);
@@ -172,13 +173,24 @@ class LawMaterial final : public Material {
       for (std::size_t k = 0; k < L::state.size(); ++k)
         point.state[k] = select(failed, given.state[k], point.state[k]);
       inc.density = select(failed, density_before, inc.density);
-      work = select(failed, zero, work);
+      for (T* const energy :
+           {&work, &spent.plastic, &spent.viscous, &spent.hypoelastic, &spent.separation})
+        *energy = select(failed, zero, *energy);
     }
     for (int k = 0; k < N; ++k) point.stress[k].store_unaligned(batch.stress[index(k)] + i);
     for (std::size_t k = 0; k < L::state.size(); ++k)
       point.state[k].store_unaligned(batch.state[k] + i);
     inc.density.store_unaligned(batch.density + i);
+    // where the law can have but one of the two, the batch has no room for the other
+    if constexpr (L::has_stress_memory)
+      spent.plastic = spent.plastic + spent.viscous;
+    else
+      spent.viscous = spent.viscous + spent.plastic;
     if (batch.work != nullptr) work.store_unaligned(batch.work + i);
+    if (batch.plastic != nullptr) spent.plastic.store_unaligned(batch.plastic + i);
+    if (batch.viscous != nullptr) spent.viscous.store_unaligned(batch.viscous + i);
+    if (batch.hypoelastic != nullptr) spent.hypoelastic.store_unaligned(batch.hypoelastic + i);
+    if (batch.separation != nullptr) spent.separation.store_unaligned(batch.separation + i);
     if (batch.modulus != nullptr)
       L::modulus(P, point.stress, point.state, inc.density).store_unaligned(batch.modulus + i);
     if (batch.viscosity != nullptr)

@@ -22,9 +22,10 @@ struct LinearisedCamClay : ModifiedCamClay<Compression::ln_v_ln_p> {
 
   static bool lost(const State<double>& at) { return at[i_rho_sep] >= lost_density; }
 
+  /// Says nothing of its work: nobody runs it but to compare stresses.
   template <class T, int N>
   static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& stress,
-                        State<T>& at, int* evaluations = nullptr) {
+                        State<T>& at, StepWork<T>* = nullptr, int* evaluations = nullptr) {
     const T zero(0.0), one(1.0);
     const auto was_lost = at[i_rho_sep] > zero;
     const T p_n = select(was_lost, one, T(pressure(stress) + P.p_shift));

@@ -29,6 +29,12 @@ struct BatchOf {
   double* modulus = nullptr;                 ///< out, optional: ρc² [Pa]
   double* viscosity = nullptr;  ///< out, optional: shear viscosity limiting the step [Pa s]
   double* work = nullptr;  ///< out, optional: ½(σ_n + σ_{n+1}):Δε, energy per mean volume [J/m³]
+  /// Out, optional: what of it the law does not store (StepWork, law.hpp) [J/m³]. What a law that
+  /// remembers its stress dissipates is plastic, else viscous; the other two are filled as well.
+  double* plastic = nullptr;
+  double* viscous = nullptr;
+  double* hypoelastic = nullptr;
+  double* separation = nullptr;
 };
 using Batch = BatchOf<4>;         ///< plane strain
 using SpatialBatch = BatchOf<6>;  ///< three dimensions

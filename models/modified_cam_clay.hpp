@@ -77,13 +77,30 @@ struct ModifiedCamClay {
   /// `evaluations`, if given, is raised by the number of evaluations that its return takes.
   template <class T, int N>
   static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& stress,
-                        State<T>& state_now, int* evaluations = nullptr);
+                        State<T>& state_now, StepWork<T>* spent = nullptr,
+                        int* evaluations = nullptr);
 
   /// Elastic: MCC-4; plastic: consistency of MCC-1 with MCC-2 and MCC-3.
   template <class T, int N>
   static void rate(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
                    const T& density, const Sym<T, N>& D, Branch branch, Sym<T, N>& stress_rate,
                    State<T>& state_rate);
+
+  /// ψ_s d ln p̃ with ψ_s = q²/6G, for G ∝ p̃ (and, on v – ln p lines, ∝ v); on ln v – ln p lines
+  /// also ψ_s dε_v + ψ_v dε_v^p, a plastic change of volume carrying the energy ψ_v per volume
+  /// along. Derived in physics.md, "Where the work goes".
+  template <class T, int N>
+  static T hypoelastic_power(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
+                             const T& density, const Sym<T, N>& D, const Sym<T, N>& stress_rate) {
+    const T p = pressure(stress) + P.p_shift;
+    const T kappa = kappa_star(P, specific_volume(P, density));
+    const Sym<T, N> s = deviator(stress);
+    const T shear_energy = contract(s, s) * kappa / (T(4.0) * P.shear_ratio() * p);
+    const T ln_p_rate = pressure(stress_rate) / p;
+    if (compression == Compression::v_ln_p) return shear_energy * ln_p_rate;
+    const T plastic_v = -trace(D) - kappa * ln_p_rate;
+    return shear_energy * (ln_p_rate - trace(D)) + compression_energy(P, p, kappa) * plastic_v;
+  }
 
   /// F/p_c, in Pa so that it compares with a stress (MCC-1); the boundary is the same.
   template <class T, int N>
@@ -117,21 +134,26 @@ struct ModifiedCamClay {
   template <class T, int N>
   static T stored_energy(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
                          const T& density) {
-    using std::log;
-    const T one(1.0);
     const auto apart = at[i_rho_sep] > T(0.0);
     const T kappa = kappa_star(P, specific_volume(P, density));
-    const T bearing = select(apart, one, T(pressure(stress) + P.p_shift));
-    const T ln_p = log(bearing / select(P.p_shift > T(0.0), P.p_shift, one));
-    // r − 1 + κ = κ(1 + ln(p̃/p_s)(e^{κ ln(p̃/p_s)} − 1)/(κ ln(p̃/p_s)))
-    const T compression_energy =
-        compression == Compression::ln_v_ln_p
-            ? kappa * (bearing - P.p_shift * (one + ln_p * expm1_over(T(kappa * ln_p)))) /
-                  (one - kappa)
-            : kappa * (bearing - P.p_shift * (one + ln_p));
+    const T bearing = select(apart, T(1.0), T(pressure(stress) + P.p_shift));
     const T G = P.shear_ratio() * bearing / kappa;
     const Sym<T, N> s = deviator(stress);
-    return select(apart, T(0.0), T(compression_energy + contract(s, s) / (T(4.0) * G)));
+    return select(apart, T(0.0),
+                  T(compression_energy(P, bearing, kappa) + contract(s, s) / (T(4.0) * G)));
+  }
+
+  /// Its first part, at p̃ with κ*.
+  template <class T>
+  static T compression_energy(const Params<T>& P, const T& bearing, const T& kappa) {
+    using std::log;
+    const T one(1.0);
+    const T ln_p = log(bearing / select(P.p_shift > T(0.0), P.p_shift, one));
+    // r − 1 + κ = κ(1 + ln(p̃/p_s)(e^{κ ln(p̃/p_s)} − 1)/(κ ln(p̃/p_s)))
+    return compression == Compression::ln_v_ln_p
+               ? kappa * (bearing - P.p_shift * (one + ln_p * expm1_over(T(kappa * ln_p)))) /
+                     (one - kappa)
+               : kappa * (bearing - P.p_shift * (one + ln_p));
   }
 
   /// −κ* ln(p̃/p̃_contact), MCC-4, from where contact is made; 0 for a point that is separated.

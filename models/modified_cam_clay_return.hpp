@@ -157,7 +157,8 @@ typename R::Point bracketed_root(const R& eq, const typename R::Point& first, co
 template <Compression compression>
 template <class T, int N>
 Mask<T> ModifiedCamClay<compression>::update(const Params<T>& P, const Increment<T, N>& inc,
-                                             Sym<T, N>& stress, State<T>& at, int* evaluations) {
+                                             Sym<T, N>& stress, State<T>& at, StepWork<T>* spent,
+                                             int* evaluations) {
   using std::log;
   const T one(1.0);
   const T zero(0.0);
@@ -295,6 +296,49 @@ Mask<T> ModifiedCamClay<compression>::update(const Params<T>& P, const Increment
   const Sym<T, N> next = s - Sym<T, N>::isotropic(p - P.p_shift);
   failed = failed || (bears && !finite(T(contract(next, next))));
   const auto keeps = failed || (touching && !moving);
+  if (spent != nullptr) {
+    const auto works = touching && moving && !torn;
+    const T p_end = select(p > T(1e-200), p, T(1e-200));  // of a point that parts, perhaps 0
+    // Δe^p = (1 − r) s_tr/2Ḡ with the r = q/q_tr of the return, Δε_v^p = κ(x_tr − x):
+    // s_n:s_tr and s_tr:s_tr are polynomials in Ḡ
+    const T third(1.0 / 3.0);
+    const T n_trial = third * (T(2.0) * Q0 + G * Q1);
+    const T trial2 = T(2.0) * third * (Q0 + G * (Q1 + G * Q2));
+    const T plastic_v = kappa * (x_trial - x);
+    const T mean_p = T(0.5) * (p_n + p) - P.p_shift;
+    const T quarter_G = T(0.25) / G;
+    const T flow = quarter_G * (one - q_ratio) * (n_trial + q_ratio * trial2) + mean_p * plastic_v;
+    spent->plastic = select(works, flow, zero);
+    // ∫ψ_s d ln G along the step, G from g_n to g_n p/p_n
+    const T quarter_g = T(0.25) / g_n;
+    const T s2_n = T(2.0) * third * Q0;
+    const T s2 = square(q_ratio) * trial2;
+    const T shear_n = quarter_g * s2_n;
+    const T shear_end = quarter_g * s2 * p_n / p_end;
+    T path = quarter_G * (s2 - s2_n) - (shear_end - shear_n);
+    if (compression == Compression::ln_v_ln_p) {
+      T stored = kappa / (one - kappa) * mean_p;
+      if (any(P.p_shift > zero))
+        stored = T(0.5) * (compression_energy(P, p_n, kappa) + compression_energy(P, p_end, kappa));
+      path = path + T(0.5) * (shear_n + shear_end) * strain_v + stored * plastic_v;
+    }
+    spent->hypoelastic = select(works, path, zero);
+    // A point that parts has gone through the step as if it bore to the end, and drops then what it
+    // carries: its stored energy, and the share of its stress in the work of the step.
+    if (any(parting))
+      spent->separation = select(
+          parting && works,
+          T(compression_energy(P, p_end, kappa) + shear_end - T(0.5) * contract(next, inc.strain)),
+          zero);
+    // One that touches again has the work of p_sep and of σ over a share of the strain, and gets
+    // the energy of p_sep for nothing.
+    if (any(apart)) {
+      const T skipped = T(0.5) * (one - share) * contract(next, inc.strain) +
+                        T(0.5) * (p_contact - P.p_shift) * share * trace(inc.strain) -
+                        compression_energy(P, p_contact, kappa);
+      spent->separation = spent->separation + select(apart && works, skipped, zero);
+    }
+  }
   for (int i = 0; i < N; ++i) stress[i] = select(keeps, stress[i], T(select(bears, next[i], zero)));
   at[i_p_c] = select(keeps || !touching, at[i_p_c], p_c);
   at[i_rho_sep] = select(keeps, at[i_rho_sep], rho_sep);

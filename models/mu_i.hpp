@@ -6,6 +6,7 @@
 /// mu_i_barker_gray.hpp has a third form, with another curve.
 /// I = γ̇ d √(ρ_p/p), μ(I) = μ_0 + (μ_d − μ_0)/(I_0/I + 1), γ̇ = √(2D′:D′), τ = μ(I)p.
 
+#include "models/contact.hpp"
 #include "models/law.hpp"
 #include "models/scalar.hpp"
 
@@ -147,10 +148,11 @@ struct MuIElastoviscoplastic {
 
   template <class T, int N>
   static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& stress,
-                        State<T>&) {
+                        State<T>&, StepWork<T>* spent = nullptr) {
     using std::sqrt;
     const T p = mu_i::pressure_of(P, inc.density);
-    const Sym<T, N> s_trial = deviator(stress) + (T(2.0) * P.G) * deviator(inc.strain);
+    const Sym<T, N> s_n = deviator(stress);
+    const Sym<T, N> s_trial = s_n + (T(2.0) * P.G) * deviator(inc.strain);
     const T tau_trial = shear_norm(s_trial);
     // MUI-4: (τ_tr − τ)(S_2 − τ) = α(τ − S_0), its smaller root without cancellation;
     // B² − 4H = (τ_tr − S_2 + α)² + 4α(S_2 − S_0)
@@ -167,6 +169,16 @@ struct MuIElastoviscoplastic {
                            T(T(2.0) * H / select(elastic, T(1.0), T(two_H_over_tau * tau_trial))));
     const Sym<T, N> next = ratio * s_trial - Sym<T, N>::isotropic(p);
     const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
+    if (spent != nullptr) {
+      // Δe^p = (γ̇_pΔt/2τ_tr) s_tr with Gγ̇_pΔt = τ_tr − τ, along the return; s_{n+1} = (τ/τ_tr) s_tr
+      const T quarter = T(0.25) / P.G;
+      const T turned = contract(s_n, s_trial);
+      spent->plastic = quarter * (T(1.0) - ratio) * (turned + ratio * (T(2.0) * square(tau_trial)));
+      // |s|²/4G is energy per volume, and the volume changes: ψ_s dε_v, though nothing works. For
+      // the mean of |s|² over the step s_n:s_{n+1}.
+      spent->hypoelastic = -quarter * ratio * turned * trace(inc.strain);
+      spent->separation = work_over_gap(P.rho_0, stress, p, inc);
+    }
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
     return failed;
   }
@@ -191,6 +203,14 @@ struct MuIElastoviscoplastic {
     const T plastic = contract(s, deviator(D)) / divisor + P.mu_0 * K_now * trace(D) / P.G;
     const T gamma_dot_p = select(rate_dependent, viscous, plastic);
     stress_rate = stress_rate - select(sheared, T(P.G * gamma_dot_p / divisor), T(0.0)) * s;
+  }
+
+  /// τ²/2G is energy per volume, and the volume changes: ψ_s dε_v, though nothing works.
+  template <class T, int N>
+  static T hypoelastic_power(const Params<T>& P, const Sym<T, N>& stress, const State<T>&, const T&,
+                             const Sym<T, N>& D, const Sym<T, N>&) {
+    const Sym<T, N> s = deviator(stress);
+    return contract(s, s) / (T(-4.0) * P.G) * trace(D);
   }
 
   /// τ of steady shear under p > 0: what it flows at, however it got there              MUI-5
@@ -282,14 +302,21 @@ struct Viscous {
   }
 
   template <class Par, class T, int N>
-  static Mask<T> update(const Par& P, const Increment<T, N>& inc, Sym<T, N>& stress, State<T>&) {
+  static Mask<T> update(const Par& P, const Increment<T, N>& inc, Sym<T, N>& stress, State<T>&,
+                        StepWork<T>* spent = nullptr) {
     const T p = mu_i::pressure_of(P, inc.density);
     // a step of no duration has no viscous stress; a NaN stays one
     const T inv_dt = select(inc.dt > T(0.0), T(T(1.0) / inc.dt), T(T(0.0) * inc.dt));
     const Sym<T, N> D_dev = inv_dt * deviator(inc.strain);
     const T eta = Law::effective_viscosity(P, p, T(T(2.0) * shear_norm(D_dev)));
-    const Sym<T, N> next = (T(2.0) * eta) * D_dev - Sym<T, N>::isotropic(p);
+    const Sym<T, N> viscous = (T(2.0) * eta) * D_dev;
+    const Sym<T, N> next = viscous - Sym<T, N>::isotropic(p);
     const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
+    if (spent != nullptr) {
+      // all of the deviator is viscous: ½(s_n + s_{n+1}):Δe
+      spent->viscous = T(0.5) * contract(deviator(stress) + viscous, inc.strain);
+      spent->separation = work_over_gap(P.rho_0, stress, p, inc);
+    }
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
     return failed;
   }
@@ -300,6 +327,13 @@ struct Viscous {
                    const Sym<T, N>& D, Branch, Sym<T, N>& stress_rate, State<T>&) {
     const T K_now = select(density < P.rho_0, T(0.0), T(P.K * density / P.rho_0));
     stress_rate = Sym<T, N>::isotropic(K_now * trace(D));
+  }
+
+  /// The stored energy is a potential.
+  template <class Par, class T, int N>
+  static T hypoelastic_power(const Par&, const Sym<T, N>&, const State<T>&, const T&,
+                             const Sym<T, N>&, const Sym<T, N>&) {
+    return T(0.0);
   }
 
   template <class Par, class T, int N>

@@ -45,10 +45,10 @@ struct NeoHookean {
   static void complete(std::vector<double>&) {}
 
   /// σ₁ = e^{−tr Δε} σ₀ + (1/J₁)[λ tr Δε I + μ(b₁ − b₀)], which leaves a resting point alone to the
-  /// last bit; b₁ − b₀ = Eb₀ + b₀E + Eb₀E, E = e^{Δε} − I.
+  /// last bit; b₁ − b₀ = Eb₀ + b₀E + Eb₀E, E = e^{Δε} − I. All work is stored.
   template <class T, int N>
   static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& stress,
-                        State<T>&) {
+                        State<T>&, StepWork<T>* = nullptr) {
     const T tr = trace(inc.strain);
     const T J = P.rho_0 / inc.density;
     const T J_before = J * exp_pair(T(-tr)).whole;
@@ -72,6 +72,13 @@ struct NeoHookean {
     const T tr = trace(D);
     stress_rate = T(-tr) * stress + T(T(1.0) / J) * (Sym<T, N>::isotropic(P.lambda * tr) +
                                                      T(T(2.0) * P.mu) * symmetric<N>(Db));
+  }
+
+  /// The stored energy is a potential.
+  template <class T, int N>
+  static T hypoelastic_power(const Params<T>&, const Sym<T, N>&, const State<T>&, const T&,
+                             const Sym<T, N>&, const Sym<T, N>&) {
+    return T(0.0);
   }
 
   template <class T, int N>

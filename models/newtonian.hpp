@@ -2,6 +2,7 @@
 /// \file
 /// Weakly compressible Newtonian fluid (physics.md, NEW): σ = −pI + 2ηD′, p = K[(ρ/ρ0)^α − 1].
 
+#include "models/contact.hpp"
 #include "models/law.hpp"
 #include "models/scalar.hpp"
 
@@ -52,13 +53,18 @@ struct Newtonian {
 
   template <class T, int N>
   static Mask<T> update(const Params<T>& P, const Increment<T, N>& inc, Sym<T, N>& stress,
-                        State<T>&) {
+                        State<T>&, StepWork<T>* spent = nullptr) {
     const T p = equation_of_state(P, inc.density);
     // σ = −pI + 2ηD′ with D = Δε/Δt; a step of no duration has no viscous stress, a NaN stays one
     const T inv_dt = select(inc.dt > T(0.0), T(T(1.0) / inc.dt), T(T(0.0) * inc.dt));
     const Sym<T, N> viscous = (T(2.0) * P.eta * inv_dt) * deviator(inc.strain);
     const Sym<T, N> next = viscous - Sym<T, N>::isotropic(p);
     const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
+    if (spent != nullptr) {
+      // all of the deviator is viscous: ½(s_n + s_{n+1}):Δe
+      spent->viscous = T(0.5) * contract(deviator(stress) + viscous, inc.strain);
+      if (tension == Tension::cut_off) spent->separation = work_over_gap(P.rho_0, stress, p, inc);
+    }
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
     return failed;
   }
@@ -69,6 +75,13 @@ struct Newtonian {
   static void rate(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density,
                    const Sym<T, N>& D, Branch, Sym<T, N>& stress_rate, State<T>&) {
     stress_rate = Sym<T, N>::isotropic(bulk_modulus(P, density) * trace(D));
+  }
+
+  /// The stored energy is a potential.
+  template <class T, int N>
+  static T hypoelastic_power(const Params<T>&, const Sym<T, N>&, const State<T>&, const T&,
+                             const Sym<T, N>&, const Sym<T, N>&) {
+    return T(0.0);
   }
 
   template <class T, int N>

@@ -159,7 +159,8 @@ class PointRun {
     energy["work_J_per_m3"] = finite_or_null(last.work);
     energy["stored_J_per_m3"] = finite_or_null(last.stored);
     energy["dissipated_J_per_m3"] = finite_or_null(last.dissipated);
-    const double error = last.work - last.stored - last.dissipated;
+    energy["hypoelastic_J_per_m3"] = finite_or_null(last.hypoelastic);
+    const double error = last.work - last.stored - last.dissipated - last.hypoelastic;
     energy["unaccounted_J_per_m3"] = finite_or_null(error);
     energy["unaccounted_relative"] = finite_or_null(scale > 0.0 ? error / scale : 0.0);
     s["energy"] = energy;

@@ -86,6 +86,12 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   real(s.ledger.start);
   real(s.ledger.start_elastic);
   real(s.ledger.stress_work);
+  real(s.ledger.plastic);
+  real(s.ledger.viscous);
+  real(s.ledger.hypoelastic);
+  real(s.ledger.separation);
+  real(s.ledger.averaging);
+  real(s.ledger.density_floor);
   real(s.ledger.transfer_loss);
   real(s.ledger.wall_loss);
   real(s.ledger.outflow);
@@ -100,6 +106,9 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   whole(s.wall_corrections);
   whole(s.newton_iterations);
   whole(s.cg_iterations);
+  whole(s.points_held);
+  whole(s.most_points_held);
+  whole(s.point_steps_held);
 }
 
 /// Turns HDF5's own error printing off for a while.

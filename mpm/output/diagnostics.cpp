@@ -48,13 +48,23 @@ SeriesRow Simulation::Impl<dim>::diagnostics() {
   row.kinetic_J_per_m = e.kinetic;
   row.potential_J_per_m = e.potential;
   row.elastic_J_per_m = e.elastic;
-  row.dissipated_J_per_m =
-      ledger.stress_work - (e.elastic + ledger.outflow_elastic - ledger.start_elastic);
+  row.plastic_J_per_m = ledger.plastic;
+  row.viscous_J_per_m = ledger.viscous;
+  row.hypoelastic_J_per_m = ledger.hypoelastic;
+  row.separation_J_per_m = ledger.separation;
+  row.averaging_loss_J_per_m = ledger.averaging;
+  row.density_floor_J_per_m = ledger.density_floor;
+  row.dissipated_J_per_m = ledger.plastic + ledger.viscous;
+  const double unstored = row.dissipated_J_per_m + row.hypoelastic_J_per_m +
+                          row.separation_J_per_m + row.averaging_loss_J_per_m +
+                          row.density_floor_J_per_m;
+  row.work_residual_J_per_m =
+      ledger.stress_work - (e.elastic + ledger.outflow_elastic - ledger.start_elastic) - unstored;
   row.transfer_loss_J_per_m = ledger.transfer_loss;
   row.wall_loss_J_per_m = ledger.wall_loss;
   row.energy_residual_J_per_m =
-      ledger.start - (e.kinetic + e.potential + e.elastic + row.dissipated_J_per_m +
-                      ledger.transfer_loss + ledger.wall_loss + ledger.outflow);
+      ledger.start - (e.kinetic + e.potential + e.elastic + unstored + ledger.transfer_loss +
+                      ledger.wall_loss + ledger.outflow);
   row.outflow_kg_per_m = ledger.outflow_mass;
   row.density_min = HUGE_VAL;
   row.density_max = 0.0;
@@ -144,6 +154,17 @@ std::vector<std::string> Simulation::Impl<dim>::warnings() const {
                       "regularised viscosity is not resolved and the deposit creeps and chatters",
                       *s.scene.dt, viscous, 2 * dim, *s.scene.dt / viscous));
   }
+  std::size_t points = 0;
+  for (const PointsOf<dim>& body : s.bodies) points += body.count;
+  // single grains that fly are no news; a body that comes apart into points is
+  if (s.most_points_held * 20 > static_cast<std::int64_t>(points))
+    list.push_back(fmt::format(
+        "up to {} points at a time ({:.2g} % of all) were so far from all others that the grid "
+        "cannot "
+        "tell their density, and were held at that of a point alone in its cells: more than spray",
+        s.most_points_held,
+        100.0 * static_cast<double>(s.most_points_held) /
+            static_cast<double>(std::max<std::size_t>(points, 1))));
   if (s.wall_corrections > 0)
     list.push_back(
         fmt::format("{} times a point was put back on a wall it had crossed", s.wall_corrections));
@@ -162,6 +183,9 @@ Simulation::Counters Simulation::Impl<dim>::counters() const {
           .dt_max_s = s.dt_max,
           .wall_corrections = s.wall_corrections,
           .sorts = s.sorts,
+          .points_held = s.points_held,
+          .most_points_held = s.most_points_held,
+          .point_steps_held = s.point_steps_held,
           .newton_iterations = s.newton_iterations,
           .cg_iterations = s.cg_iterations,
           .memory_MB = bytes / 1e6,

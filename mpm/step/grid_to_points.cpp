@@ -153,6 +153,9 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   std::array<double*, dim == 2 ? 1 : 3> spin;
   for (double*& component : spin) component = array();
   double* const work = array();
+  double* const dissipated = array();
+  double* const hypoelastic = array();
+  double* const separation = array();
   double* const modulus = array();
   double* const viscosity = array();
   double* const pressure_before = array();
@@ -181,6 +184,9 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   for (std::size_t i = 0; i < e.size(); ++i) batch.strain[i] = e[i];
   for (std::size_t i = 0; i < spin.size(); ++i) batch.spin[i] = spin[i];
   batch.work = work;
+  (follows_rate ? batch.viscous : batch.plastic) = dissipated;
+  if (!follows_rate) batch.hypoelastic = hypoelastic;
+  batch.separation = separation;
   batch.modulus = modulus;
   const bool viscous = !points.material->law().has_stress_memory && !points.splits_stress();
   batch.viscosity = viscous ? viscosity : nullptr;
@@ -201,17 +207,49 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
     if (points.splits_stress()) split_stress(points, range, batch);
     if (averages()) take_back_averaging_work(batch, motion.elastic, pressure_before);
   }
-  // A point alone in its stencil has the density m Σw²/h² (Σw² = 0.21 to 0.25, cubic; more,
-  // quadratic; in space 0.097 to 0.125 over h³); looser than that the grid cannot tell, and spray
-  // would dilate without end.
-  const double h = grid.h();
-  const Pack per_cell(dim == 2 ? 0.2 / (h * h) : 0.09 / (h * h * h));
-  for (std::size_t s = range.begin; s < range.begin + range.count; s += Pack::size) {
-    const Pack loosest = per_cell * Pack::load_aligned(points.data(F::mass) + s);
-    const Pack rho = Pack::load_aligned(points.data(F::rho) + s);
-    select(rho < loosest, loosest, rho).store_aligned(points.data(F::rho) + s);
-  }
+  hold_density(points, range, batch, motion.elastic, pressure_before, sums);
   sum_up(points, range, batch, motion, sums);
+}
+
+template <int dim>
+void Simulation::Impl<dim>::hold_density(PointsOf<dim>& points, const SlotRange& range,
+                                         const typename PointsOf<dim>::Batch& batch,
+                                         double* averaging, double* stored, BlockSums& sums) const {
+  using F = Layout<dim>;
+  const Pack per_mass(density_floor()), zero(0.0), one(1.0);
+  double* const rho = points.data(F::rho) + range.begin;
+  const double* const mass = points.data(F::mass) + range.begin;
+  auto below = zero < zero;
+  for (std::size_t k = 0; k < range.count; k += Pack::size)
+    below = below || Pack::load_aligned(rho + k) < per_mass * Pack::load_aligned(mass + k);
+  if (!any(below)) return;
+  // Σ m ψ/ρ over the points of the range
+  const auto stored_energy = [&] {
+    points.material->stored_energy(batch, stored);
+    Pack energy(0.0);
+    for (std::size_t k = 0; k < range.count; k += Pack::size)
+      energy = energy + Pack::load_aligned(stored + k) * points_of_pack(k, range.count) *
+                            Pack::load_aligned(mass + k) / Pack::load_aligned(rho + k);
+    return xsimd::hadd(energy);
+  };
+  const double before = stored_energy();
+  Pack held(0.0);
+  for (std::size_t k = 0; k < range.count; k += Pack::size) {
+    const Pack loosest = per_mass * Pack::load_aligned(mass + k);
+    const Pack now = Pack::load_aligned(rho + k);
+    const auto loose = now < loosest;
+    held = held + select(loose, one, zero) * points_of_pack(k, range.count);
+    const Pack kept = select(loose, loosest, now);
+    kept.store_aligned(rho + k);
+    // the work of the step was done over the volume that it led to
+    const Pack smaller = kept / now;
+    for (double* const energy :
+         {batch.work, batch.plastic, batch.viscous, batch.hypoelastic, batch.separation})
+      if (energy != nullptr) (smaller * Pack::load_aligned(energy + k)).store_aligned(energy + k);
+    if (averages()) (smaller * Pack::load_aligned(averaging + k)).store_aligned(averaging + k);
+  }
+  sums.held += static_cast<std::int64_t>(xsimd::hadd(held));
+  sums.held_energy += before - stored_energy();
 }
 
 template <int dim>
@@ -225,6 +263,8 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
   for (std::size_t i = 0; i < dim; ++i) g[i] = Pack(gravity[i]);
   const Pack viscous_factor(2.0 * dim / (grid.h() * grid.h()));
   Pack kinetic(0.0), work(0.0), power(0.0);
+  const double* const of_law = follows_rate ? batch.viscous : batch.plastic;
+  Pack dissipated(0.0), hypoelastic(0.0), separation(0.0), averaging(0.0);
   Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const auto at = [&](std::size_t f) {
@@ -241,7 +281,13 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
     const Pack strain_v = strain_of(0) + strain_of(1) + strain_of(2);
     kinetic = kinetic + half * m * dot(v, v);
     // ∫σ:D dV over the mean volume of the step, V = m/ρ e^{−½tr Δε}
-    work = work + m * inv_rho * (one - half * strain_v) * Pack::load_aligned(batch.work + k);
+    const Pack volume = m * inv_rho * (one - half * strain_v);
+    work = work + volume * Pack::load_aligned(batch.work + k);
+    dissipated = dissipated + volume * Pack::load_aligned(of_law + k);
+    if (!follows_rate)
+      hypoelastic = hypoelastic + volume * Pack::load_aligned(batch.hypoelastic + k);
+    separation = separation + volume * Pack::load_aligned(batch.separation + k);
+    if (averages()) averaging = averaging + volume * Pack::load_aligned(motion.elastic + k);
     std::array<Pack, F::gradient> L;
     for (std::size_t i = 0; i < L.size(); ++i) L[i] = at(F::L + i);
     std::array<Pack, F::components> stress;
@@ -258,6 +304,10 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
   }
   sums.kinetic += xsimd::hadd(kinetic);
   sums.work += xsimd::hadd(work);
+  (follows_rate ? sums.viscous : sums.plastic) += xsimd::hadd(dissipated);
+  sums.hypoelastic += xsimd::hadd(hypoelastic);
+  sums.separation += xsimd::hadd(separation);
+  sums.averaging += xsimd::hadd(averaging);
   sums.power += xsimd::hadd(power);
   sums.signals.include({std::sqrt(largest(speed2)), largest(signal), largest(viscous_rate)});
 }

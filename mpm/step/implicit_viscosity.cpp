@@ -27,8 +27,8 @@ void split_stress(PointSet& points, const SlotRange& range, const Batch& batch) 
     }
     const double before = minus_p[s];
     minus_p[s] = mean(stress);
-    batch.work[k] =
-        0.5 * (before + minus_p[s]) * trace(strain) + contract(deviator(stress), strain);
+    batch.viscous[k] = contract(deviator(stress), strain);
+    batch.work[k] = 0.5 * (before + minus_p[s]) * trace(strain) + batch.viscous[k];
   }
 }
 

@@ -12,11 +12,19 @@ void Simulation::Impl<dim>::close_ledger() {
   double work = 0.0;
   double power = 0.0;
   Signals now;
+  std::int64_t held = 0;
   const std::string* failure = nullptr;
   for (const BlockSums& sums : block_sums_) {
     if (failure == nullptr && !sums.failure.empty()) failure = &sums.failure;
     kinetic += sums.kinetic;
     work += sums.work;
+    ledger.plastic += sums.plastic;
+    ledger.viscous += sums.viscous;
+    ledger.hypoelastic += sums.hypoelastic;
+    ledger.separation += sums.separation;
+    ledger.averaging += sums.averaging;
+    ledger.density_floor += sums.held_energy;
+    held += sums.held;
     power += sums.power;
     now.include(sums.signals);
     wall_corrections += sums.corrections;
@@ -45,6 +53,10 @@ void Simulation::Impl<dim>::close_ledger() {
   ledger.kinetic = kinetic;
   ledger.power = power;
   ledger.stress_work += work + viscous_effect_.half_jump_work;
+  ledger.viscous += viscous_effect_.half_jump_work;
+  points_held = held;
+  most_points_held = std::max(most_points_held, held);
+  point_steps_held += held;
   drift += now.speed * last_dt;
   signals = now;
   if (scene.dt) {

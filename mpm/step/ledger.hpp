@@ -17,7 +17,11 @@ namespace repose::mpm {
 struct Ledger {
   double start = 0.0;  ///< kinetic + potential + elastic at t = 0
   double start_elastic = 0.0;
-  double stress_work = 0.0;    ///< ∫ σ:D dV dt at the points
+  double stress_work = 0.0;  ///< ∫ σ:D dV dt at the points
+  /// What of it goes where (StepWork)
+  double plastic = 0.0, viscous = 0.0, hypoelastic = 0.0, separation = 0.0;
+  double averaging = 0.0;      ///< taken from the stored energy by pressure averaging
+  double density_floor = 0.0;  ///< taken from the stored energy by the density floor
   double transfer_loss = 0.0;  ///< kinetic energy: points → nodes and nodes → points
   double wall_loss = 0.0;      ///< taken by walls, less what moving walls put in
   double outflow = 0.0;        ///< kinetic + potential + elastic energy carried out

@@ -32,11 +32,13 @@ void add_averaging_strain(const Material& material, const Batch& batch, double r
   }
 }
 
-void take_back_averaging_work(const Batch& batch, const double* averaging,
+void take_back_averaging_work(const Batch& batch, double* averaging,
                               const double* pressure_before) {
   for (std::size_t k = 0; k < batch.count; k += Pack::size) {
     const Pack p = load(pressure_before + k) + pressure_of(batch, k);
-    (load(batch.work + k) + Pack(0.5) * p * load(averaging + k)).store_unaligned(batch.work + k);
+    const Pack taken = Pack(0.5) * p * load(averaging + k);
+    (load(batch.work + k) + taken).store_unaligned(batch.work + k);
+    taken.store_unaligned(averaging + k);
   }
 }
 

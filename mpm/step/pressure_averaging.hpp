@@ -14,7 +14,7 @@
 ///    uniform). An average of pressures would not do that, K being another at every point.
 ///  - e^{−cγ}: the same for any Δt; nothing at rest, nor in rigid motion; objective.
 ///  - A mean: no new extremes, and the wave speed, hence the stable step, is as before.
-///  - Its work is no work of the motion: what it takes from the stored energy counts as dissipated.
+///  - Its work is no work of the motion: what it takes has a line of its own in the ledger.
 /// Noise relative to p grows as (K/p)/c, hence c of the order of K/(ρ g H); 1/κ in Cam-Clay.
 
 #include <array>
@@ -31,8 +31,8 @@ void add_averaging_strain(const Material& material, const Batch& batch, double r
                           const std::array<double*, 4>& strain);
 
 /// Takes the part of the averaging strain out of the work that the law has reported,
-/// ½(σ_n + σ_{n+1}):Δε.
-void take_back_averaging_work(const Batch& batch, const double* averaging,
-                              const double* pressure_before);
+/// ½(σ_n + σ_{n+1}):Δε. `averaging`: in the volume strains added, out the energy per mean volume
+/// that they have taken from the material, ½(p_n + p_{n+1}) tr Δε [J/m³].
+void take_back_averaging_work(const Batch& batch, double* averaging, const double* pressure_before);
 
 }  // namespace repose::mpm

@@ -36,10 +36,17 @@ struct SeriesRow {
   double front_99_m;   ///< x (radius) up to which lies 99 % of the mass in the box
   double height_m;     ///< solid depth at the left wall, of a cylinder on its axis
   double kinetic_J_per_m, potential_J_per_m, elastic_J_per_m;
-  double dissipated_J_per_m;       ///< by the material: stress work not stored
+  double dissipated_J_per_m;       ///< by the material: plastic + viscous
+  double plastic_J_per_m;          ///< friction and plastic compaction
+  double viscous_J_per_m;          ///< viscous stress
+  double hypoelastic_J_per_m;      ///< taken by an elasticity without a potential
+  double separation_J_per_m;       ///< lost or made where contact is (StepWork, models/law.hpp)
+  double averaging_loss_J_per_m;   ///< stored energy taken by pressure averaging (numerical)
+  double density_floor_J_per_m;    ///< stored energy taken by the density floor (numerical)
   double transfer_loss_J_per_m;    ///< kinetic energy lost between points and grid (numerical)
   double wall_loss_J_per_m;        ///< taken by the walls: impact and friction
   double energy_residual_J_per_m;  ///< what the ledger does not account for (time integration)
+  double work_residual_J_per_m;    ///< of that: stress work that no line accounts for
   double mass_kg_per_m;
   double outflow_kg_per_m;                    ///< mass that has left through open edges
   double momentum_x, momentum_y, momentum_z;  ///< [kg m/s per m]
@@ -103,6 +110,9 @@ class Simulation {
     double dt_min_s, dt_max_s;
     std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
     std::int64_t sorts;
+    /// Points whose density the floor held up: in the last step, the most in any step, summed over
+    /// all steps
+    std::int64_t points_held, most_points_held, point_steps_held;
     std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
     double memory_MB;                               ///< of points and grid
     int threads;

@@ -79,6 +79,9 @@ class Simulation::Impl {
   std::int64_t sorts = 0;
   std::int64_t wall_corrections = 0;
   std::int64_t newton_iterations = 0, cg_iterations = 0;  ///< of the implicit viscosity
+  std::int64_t points_held = 0;                           ///< at the density floor in the last step
+  std::int64_t most_points_held = 0;                      ///< in any step
+  std::int64_t point_steps_held = 0;                      ///< summed over steps
   double fixed_step_excess = 0.0;    ///< largest dt/(wave limit) of a fixed step
   double viscous_step_excess = 0.0;  ///< largest dt/(viscous limit) of a fixed step
   double first_dt = 0.0;
@@ -92,6 +95,10 @@ class Simulation::Impl {
   struct BlockSums {
     double kinetic = 0.0;
     double work = 0.0;
+    double plastic = 0.0, viscous = 0.0, hypoelastic = 0.0, separation = 0.0;  ///< StepWork
+    double averaging = 0.0;    ///< taken by the averaging of pressures
+    double held_energy = 0.0;  ///< taken by the density floor, stored energy
+    std::int64_t held = 0;     ///< points at the density floor
     double power = 0.0;
     Signals signals;
     std::int64_t corrections = 0;
@@ -111,12 +118,24 @@ class Simulation::Impl {
   void move(PointsOf<dim>& points, const SlotRange& range, const MotionOf<dim>& motion, double dt,
             BlockSums& sums) const;
   /// Arrays of a range's length: velocity and mean elastic strain (Motion), and in strain() a
-  /// strain, a spin, work, modulus, viscosity and pressure.
+  /// strain, a spin, work and what it is spent on (3), modulus, viscosity and pressure.
   static constexpr std::size_t scratch_arrays =
-      dim + 1 + Layout<dim>::components + (dim == 2 ? 1 : 3) + 4;
+      dim + 1 + Layout<dim>::components + (dim == 2 ? 1 : 3) + 7;
   /// Brings a range's stress to the end of the step.
   void strain(PointsOf<dim>& points, std::size_t body, const SlotRange& range,
               const MotionOf<dim>& motion, double dt, double* scratch, BlockSums& sums) const;
+  /// Keeps a range's densities at or above the density floor. `averaging`: energies of the
+  /// averaging (take_back_averaging_work), if it averages; `stored`: room.
+  void hold_density(PointsOf<dim>& points, const SlotRange& range,
+                    const typename PointsOf<dim>::Batch& batch, double* averaging, double* stored,
+                    BlockSums& sums) const;
+  /// The loosest density of a point over its mass: what it has alone in its stencil, m Σw²/h²
+  /// (Σw² = 0.21 to 0.25, cubic; more, quadratic; in space 0.097 to 0.125 over h³). Looser than
+  /// that the grid cannot tell, and spray would dilate without end. [1/m², in space 1/m³]
+  double density_floor() const {
+    const double h = grid.h();
+    return dim == 2 ? 0.2 / (h * h) : 0.09 / (h * h * h);
+  }
   /// Adds a range's energies, work, power and signals after its update.
   void sum_up(const PointsOf<dim>& points, const SlotRange& range,
               const typename PointsOf<dim>::Batch& batch, const MotionOf<dim>& motion,

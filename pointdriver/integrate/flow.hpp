@@ -23,7 +23,7 @@ constexpr bool is_rate_dependent() {
 
 /// The state of an element as one vector, and its time derivative as a function of it.
 ///
-///     y = (σ[6], state[m], ε[6], work, dissipated)
+///     y = (σ[6], state[m], ε[6], work, dissipated, hypoelastic)
 ///
 /// Density follows from strain, ρ = ρ_0 exp(−tr ε). σ̇ is linear in D on a fixed branch, so with
 /// D = D_p + Σ z_j N_j (control.hpp) the unknown z solve a system as small as the number of rows
@@ -36,7 +36,7 @@ class Flow {
   static constexpr std::size_t m = L::state.size();
   static constexpr std::size_t i_strain = 6 + m;
   static constexpr std::size_t i_work = i_strain + 6;
-  static constexpr std::size_t size = i_work + 2;
+  static constexpr std::size_t size = i_work + 3;
   using Y = std::array<T, size>;
   static_assert(m <= max_state);
 
@@ -298,17 +298,19 @@ class Flow {
     for (std::size_t i = 0; i < m; ++i) dy[6 + i] = state_rate[i];
     dy[i_work] = T(0.0);
     dy[i_work + 1] = T(0.0);
+    dy[i_work + 2] = T(0.0);
     if (energy_) powers(y, D, stress_rate, dy);
   }
 
   /// Work input J σ:D and dissipation J(σ:D − σ:D^e), J = ρ_0/ρ. D^e is what the isotropic elastic
-  /// law needs for σ̇: σ:D^e = p ṗ/K + s:ṡ/(2G).
+  /// law needs for σ̇: σ:D^e = p ṗ/K + s:ṡ/(2G), of which the law says what no potential stores.
   void powers(const Y& y, const Sym<T, 6>& D, const Sym<T, 6>& stress_rate, Y& dy) const {
     const Sym<T, 6> sigma = stress(y);
     const T rho = density_in_leg(y);
     const T J = density_0_ / rho;
     const T power = contract(sigma, D);
     dy[i_work] = J * power;
+    dy[i_work + 2] = J * L::hypoelastic_power(P_, sigma, state(y), rho, D, stress_rate);
     if (branch == Branch::elastic) return;
     T K, two_G;
     elastic_moduli(y, rho, K, two_G);

@@ -126,8 +126,9 @@ class Implicit {
         for (int j = 0; j < k; ++j) zeta_T[at(j)] = zeta_T[at(j)] - r[at(j)];
       }
     }
-    if (!apply(run.flow(), run.flow().parameters(), y, dt, zeta_T, next_)) return false;
-    if (run.flow().energy()) account(run.flow(), y, next_);
+    StepWork<T> spent;
+    if (!apply(run.flow(), run.flow().parameters(), y, dt, zeta_T, next_, &spent)) return false;
+    if (run.flow().energy()) account(run.flow(), y, spent, next_);
     Sym<T, 6> D;
     for (std::size_t i = 0; i < 6; ++i) D.c[i] = (next_[F::i_strain + i] - y[F::i_strain + i]) / dt;
     run.note_rate(D);
@@ -195,7 +196,7 @@ class Implicit {
   template <class S>
   static bool apply(const F& flow, const typename L::template Params<S>& P,
                     const typename Flow<L, S>::Y& y, const S& dt, const std::array<S, 6>& zeta,
-                    typename Flow<L, S>::Y& next) {
+                    typename Flow<L, S>::Y& next, StepWork<S>* spent = nullptr) {
     using std::exp;
     const Control& control = flow.control();
     Increment<S, 6> inc;
@@ -216,7 +217,7 @@ class Implicit {
     inc.density = rho_0 * exp(-(next[F::i_strain] + next[F::i_strain + 1] + next[F::i_strain + 2]));
     Sym<S, 6> stress = Flow<L, S>::stress(y);
     auto state = Flow<L, S>::state(y);
-    if (L::update(P, inc, stress, state)) return false;
+    if (L::update(P, inc, stress, state, spent)) return false;
     for (std::size_t i = 0; i < 6; ++i) next[i] = stress.c[i];
     for (std::size_t i = 0; i < m; ++i) next[6 + i] = state[i];
     return true;
@@ -268,32 +269,15 @@ class Implicit {
     return L::template Params<S>::from(std::span<const S>(wide));
   }
 
-  /// Work by the trapezoidal rule; dissipation = work − elastic work with the moduli half way, or
-  /// all shear work where stress has no memory.
-  static void account(const F& flow, const Y& y, Y& next) {
+  /// Work by the trapezoidal rule, and what the law's update says of it, over the volume half way.
+  static void account(const F& flow, const Y& y, const StepWork<T>& spent, Y& next) {
     Y middle;
     for (std::size_t i = 0; i < F::size; ++i) middle[i] = 0.5 * (y[i] + next[i]);
-    const T rho = flow.density(middle);
-    const T J = flow.density_0() / rho;
-    Sym<T, 6> strain, change;
-    for (std::size_t i = 0; i < 6; ++i) {
-      strain.c[i] = next[F::i_strain + i] - y[F::i_strain + i];
-      change.c[i] = next[i] - y[i];
-    }
-    const Sym<T, 6> sigma = F::stress(middle);
-    const T work = contract(sigma, strain);
-    T dissipated;
-    if constexpr (L::has_stress_memory) {
-      T K, two_G;
-      flow.elastic_moduli(middle, rho, K, two_G);
-      if (!(value(K) > 0.0)) return;
-      dissipated = work - pressure(sigma) * pressure(change) / K -
-                   contract(deviator(sigma), deviator(change)) / two_G;
-    } else {
-      dissipated = contract(deviator(F::stress(next)), deviator(strain));
-    }
-    next[F::i_work] = y[F::i_work] + J * work;
-    next[F::i_work + 1] = y[F::i_work + 1] + J * dissipated;
+    const T J = flow.density_0() / flow.density(middle);
+    const Sym<T, 6> strain = F::strain(next) - F::strain(y);
+    next[F::i_work] = y[F::i_work] + J * contract(F::stress(middle), strain);
+    next[F::i_work + 1] = y[F::i_work + 1] + J * (spent.plastic + spent.viscous);
+    next[F::i_work + 2] = y[F::i_work + 2] + J * spent.hypoelastic;
   }
 
   /// The first event (in table order) that has happened at next_; the branch is the update's own

@@ -206,6 +206,7 @@ class LegRun {
     row.residual = residual(change, row.stress, value(t));
     row.work = y[F::i_work];
     row.dissipated = y[F::i_work + 1];
+    row.hypoelastic = y[F::i_work + 2];
     if (flow_.energy()) row.stored = flow_.stored_energy(y) - flow_.stored_at_start;
     if (has_rate_) {
       row.strain_rate = rate_;

@@ -22,6 +22,7 @@ void for_each_number(Row<A>& a, Row<B>& b, F&& f) {
   f(a.work, b.work);
   f(a.stored, b.stored);
   f(a.dissipated, b.dissipated);
+  f(a.hypoelastic, b.hypoelastic);
 }
 
 /// values and slopes[k], k < n, of a curve.

@@ -88,7 +88,7 @@ class LegSystem final : public SmoothSystem {
       size[F::i_strain + i] = strain;
     }
     for (std::size_t i = 0; i < F::m; ++i) size[6 + i] = std::max(std::abs(y[6 + i]), 1e-9 * p);
-    size[F::i_work] = size[F::i_work + 1] = p * strain;
+    for (std::size_t i = F::i_work; i < F::size; ++i) size[i] = p * strain;
     double rate = rate_size_;
     for (int j = 0; j < algebraic_; ++j) rate = std::max(rate, std::abs(y[n + j]));
     for (int j = 0; j < algebraic_; ++j) size[n + j] = rate;

@@ -24,10 +24,12 @@ struct Row {
   Sym<T, 6> stress{};       ///< [Pa]
   Sym<T, 6> strain_rate{};  ///< [1/s]; only where the test asks for it
   std::array<T, max_state> state{};
-  T density{0.0};         ///< [kg/m³]
-  T work{0.0};            ///< ∫ J σ:D dt, per initial volume [J/m³]
-  T stored{0.0};          ///< recoverable energy since the start, per initial volume [J/m³]
-  T dissipated{0.0};      ///< ∫ J σ:D^p dt, per initial volume [J/m³]
+  T density{0.0};     ///< [kg/m³]
+  T work{0.0};        ///< ∫ J σ:D dt, per initial volume [J/m³]
+  T stored{0.0};      ///< recoverable energy since the start, per initial volume [J/m³]
+  T dissipated{0.0};  ///< ∫ J σ:D^p dt, viscous flow included, per initial volume [J/m³]
+  /// Elastic work that no potential stores (StepWork, models/law.hpp), per initial volume [J/m³]
+  T hypoelastic{0.0};
   double residual = 0.0;  ///< relative violation of the prescription (Control::residual) [-]
   int leg = 0;
 };

@@ -37,7 +37,8 @@ End drive(const typename L::template Params<double>& P, const InitialPoint& star
       inc.strain = (1.0 / substeps) * strain_of(step);
       inc.dt = 1.0;
       inc.density = density = density * std::exp(-trace(inc.strain));
-      const bool failed = L::update(P, inc, end.stress, state, &end.outcome.evaluations);
+      StepWork<double> spent;
+      const bool failed = L::update(P, inc, end.stress, state, &spent, &end.outcome.evaluations);
       end.outcome.converged = !failed;
       if constexpr (std::is_same_v<L, LinearisedCamClay>)
         end.outcome.converged = end.outcome.converged && !L::lost(state);

@@ -68,7 +68,14 @@ std::vector<std::string> series_columns(std::size_t dimensions) {
                                    "energy_residual_J_per_m",
                                    "outflow_kg_per_m",
                                    "angular_momentum",
-                                   "front_99_m"};
+                                   "front_99_m",
+                                   "plastic_J_per_m",
+                                   "viscous_J_per_m",
+                                   "hypoelastic_J_per_m",
+                                   "separation_J_per_m",
+                                   "averaging_loss_J_per_m",
+                                   "density_floor_J_per_m",
+                                   "work_residual_J_per_m"};
   if (dimensions == 2) return columns;
   for (std::string& column : columns) column = named(column, dimensions);
   for (std::string& column : columns)
@@ -99,7 +106,14 @@ std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensi
                              row.energy_residual_J_per_m,
                              row.outflow_kg_per_m,
                              row.angular_momentum,
-                             row.front_99_m};
+                             row.front_99_m,
+                             row.plastic_J_per_m,
+                             row.viscous_J_per_m,
+                             row.hypoelastic_J_per_m,
+                             row.separation_J_per_m,
+                             row.averaging_loss_J_per_m,
+                             row.density_floor_J_per_m,
+                             row.work_residual_J_per_m};
   if (dimensions == 3)
     values.insert(values.end(), {row.angular_momentum_x, row.angular_momentum_y, row.momentum_z});
   return values;
@@ -201,9 +215,16 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["angular_momentum"] = last.angular_momentum;
   put("elastic_J_per_m", last.elastic_J_per_m);
   put("dissipated_J_per_m", last.dissipated_J_per_m);
+  put("plastic_J_per_m", last.plastic_J_per_m);
+  put("viscous_J_per_m", last.viscous_J_per_m);
+  put("hypoelastic_J_per_m", last.hypoelastic_J_per_m);
+  put("separation_J_per_m", last.separation_J_per_m);
+  put("averaging_loss_J_per_m", last.averaging_loss_J_per_m);
+  put("density_floor_J_per_m", last.density_floor_J_per_m);
   put("transfer_loss_J_per_m", last.transfer_loss_J_per_m);
   put("wall_loss_J_per_m", last.wall_loss_J_per_m);
   put("energy_residual_J_per_m", last.energy_residual_J_per_m);
+  put("work_residual_J_per_m", last.work_residual_J_per_m);
   s["energy_error"] = record.energy_error(last);
   s["wall_s"] = wall;
   s["cpu_s"] = record.cpu_s + spent.cpu_s;
@@ -213,6 +234,9 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["peak_memory_MB"] = spent.peak_memory_MB;
   s["wall_corrections"] = counters.wall_corrections;
   s["sorts"] = counters.sorts;
+  s["points_at_density_floor"] = counters.points_held;
+  s["points_at_density_floor_max"] = counters.most_points_held;
+  s["point_steps_at_density_floor"] = counters.point_steps_held;
   if (simulation.scene().viscosity == mpm::Viscosity::implicit_solve) {
     s["newton_iterations"] = counters.newton_iterations;
     s["cg_iterations"] = counters.cg_iterations;

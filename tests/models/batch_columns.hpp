@@ -40,7 +40,7 @@ struct Columns {
   std::array<std::vector<double>, components> strain, stress;
   std::array<std::vector<double>, L::state.size()> state;
   std::array<std::vector<double>, 3> spin;
-  std::vector<double> density, modulus, viscosity, work;
+  std::vector<double> density, modulus, viscosity, work, plastic, viscous, hypoelastic, separation;
 
   template <class F>
   void each_input(F&& f) {
@@ -55,7 +55,9 @@ struct Columns {
       column.assign(padded(n) + margin, canary);
     };
     each_input(fill);
-    for (auto* column : {&modulus, &viscosity, &work}) fill(*column);
+    for (auto* column :
+         {&modulus, &viscosity, &work, &plastic, &viscous, &hypoelastic, &separation})
+      fill(*column);
   }
   void set(std::size_t i, const LawPoint<L>& point, const Sym<double, 6>& e,
            const std::array<double, 3>& angles) {
@@ -91,6 +93,10 @@ struct Columns {
     b.modulus = modulus.data();
     b.viscosity = viscosity.data();
     b.work = work.data();
+    b.plastic = plastic.data();
+    b.viscous = viscous.data();
+    b.hypoelastic = hypoelastic.data();
+    b.separation = separation.data();
     return b;
   }
   LawPoint<L> point(std::size_t i) const {
@@ -101,7 +107,8 @@ struct Columns {
   }
   /// Everything update() writes for point i.
   std::vector<double> written(std::size_t i) const {
-    std::vector<double> all{density[i], modulus[i], viscosity[i], work[i]};
+    std::vector<double> all{density[i], modulus[i], viscosity[i],   work[i],
+                            plastic[i], viscous[i], hypoelastic[i], separation[i]};
     for (const auto& column : stress) all.push_back(column[i]);
     for (std::size_t k = 0; k < L::state.size(); ++k) all.push_back(state[k][i]);
     return all;

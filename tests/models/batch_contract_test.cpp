@@ -119,7 +119,9 @@ TYPED_TEST(BatchContract, AFailedPointIsReportedAndLeftAsItWas) {
           EXPECT_EQ(report.failed, where) << example.label << " bad = " << bad;
           const LawPoint<L> after = columns.point(where);
           EXPECT_TRUE(same_bits(after, before)) << example.label;
-          EXPECT_EQ(columns.work[where], 0.0);
+          for (const auto* spent : {&columns.work, &columns.plastic, &columns.viscous,
+                                    &columns.hypoelastic, &columns.separation})
+            EXPECT_EQ((*spent)[where], 0.0);
           if (what < 2) {
             EXPECT_TRUE(std::isfinite(columns.modulus[where]) &&
                         std::isfinite(columns.viscosity[where]));
@@ -185,6 +187,18 @@ TYPED_TEST(BatchContract, OutputsAreThoseOfTheLaw) {
           0.5 * (LawPoint<L>::template truncated<TypeParam::components>(task.point.stress) + sigma);
       near(columns.work[i], contract(mean_stress, strain),
            largest(after.stress) * largest(task.strain));
+      // what a point on its own spends, of stresses that are differences of moduli times strains
+      StepWork<double> spent;
+      auto sigma_now = LawPoint<L>::template truncated<TypeParam::components>(task.point.stress);
+      auto state_now = task.point.state;
+      L::update(P, Increment<double, TypeParam::components>{strain, example.time, after.density},
+                sigma_now, state_now, &spent);
+      const double of_work =
+          32.0 * stress_scale<L>(P, task.point, after, task.strain) * largest(task.strain);
+      near(columns.plastic[i], spent.plastic, of_work);
+      near(columns.viscous[i], spent.viscous, of_work);
+      near(columns.hypoelastic[i], spent.hypoelastic, of_work);
+      near(columns.separation[i], spent.separation, of_work);
       // a stored energy is a difference of terms of the size of the modulus (ρ-driven pressure)
       near(energy[i], L::stored_energy(P, sigma, after.state, after.density), M);
     }

@@ -41,8 +41,9 @@ TEST_P(CollapseTest, LedgerAndMassClose) {
     transfer = row.transfer_loss_J_per_m;
     EXPECT_NEAR(row.mass_kg_per_m / start.mass_kg_per_m, 1.0, 1e-12);
     EXPECT_NEAR(row.kinetic_J_per_m + row.potential_J_per_m + row.elastic_J_per_m +
-                    row.dissipated_J_per_m + row.transfer_loss_J_per_m + row.wall_loss_J_per_m +
-                    row.energy_residual_J_per_m,
+                    row.dissipated_J_per_m + row.hypoelastic_J_per_m + row.separation_J_per_m +
+                    row.averaging_loss_J_per_m + row.density_floor_J_per_m +
+                    row.transfer_loss_J_per_m + row.wall_loss_J_per_m + row.energy_residual_J_per_m,
                 start.kinetic_J_per_m + start.potential_J_per_m + start.elastic_J_per_m, 1e-9);
   }
   const double drop = start.potential_J_per_m - lowest;
