@@ -301,7 +301,10 @@ class Implicit {
     for (int i = 0; i < 60 && high - low > 1e-13 * value(whole); ++i) {
       double dt = i % 3 == 2 ? 0.5 * (low + high) : high - g_high * (high - low) / (g_high - g_low);
       if (!(dt > low && dt < high)) dt = 0.5 * (low + high);
-      if (!step(run, y, t, T(dt))) break;
+      if (!step(run, y, t, T(dt))) {
+        guess_ = first_guess_;  // as drive() does where a step is halved
+        if (!step(run, y, t, T(dt))) break;
+      }
       const double g = value(run.event_value(e, next_, t + T(dt)));
       if (high > low) slope = (g_high - g_low) / (high - low);
       if (g > 0.0) {

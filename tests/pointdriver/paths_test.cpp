@@ -269,8 +269,8 @@ TEST(Energy, a_closed_elastic_cycle_reports_what_hypoelasticity_makes_or_loses) 
 //   also
 //                ∫ψ dε_v^p of ψ = κp/(1 − κ) and dε_v^p = −κ d ln p: −κ²/(1 − κ) (p − p_0)
 //   stored       κ*(p − p_0) or κ/(1 − κ) (p − p_0), and κ*η²p/(6α)
-// Their sum is the work, ∫q dε_q: 0.9 % of it were called "unaccounted" when nobody said what
-// hypoelasticity takes.
+// Their sum is the work, ∫q dε_q. (A percent of it was called "unaccounted" as long as nobody said
+// what hypoelasticity takes.)
 TEST(Energy, of_an_undrained_test_in_closed_form) {
   for (const bool v_ln_p : {true, false})
     for (const Method method : {Method::adaptive, Method::cvode, Method::ida, Method::implicit}) {
