@@ -8,12 +8,13 @@
 #include <hdf5.h>
 
 #include "io/atomic_file.hpp"
+#include "io/seal.hpp"
 #include "mpm/step/simulation_impl.hpp"
 
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 4;
+constexpr std::int64_t format_version = 5;
 
 /// An open HDF5 object, closed by its own function.
 class Handle {
@@ -61,7 +62,9 @@ template <class T>
 std::vector<T> read(hid_t file, const std::string& name) {
   const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, ("find " + name).c_str());
   const Handle space(H5Dget_space(set), H5Sclose, "read a data space");
-  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (count < 0) throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
+  std::vector<T> values(static_cast<std::size_t>(count));
   if (!values.empty() &&
       H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
@@ -172,7 +175,7 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   std::string image(static_cast<std::size_t>(size), '\0');
   if (H5Fget_file_image(file, image.data(), image.size()) < 0)
     throw std::runtime_error("HDF5 could not give the checkpoint's bytes");
-  io::write_atomically(path, image);
+  io::write_atomically(path, io::sealed(std::move(image)));
 }
 
 template <int dim>
@@ -181,7 +184,11 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
   Impl& s = *this;
   const auto reject = [&](const std::string& why) { throw io::IoError(path, why); };
   try {
-    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
+    std::string image = io::read_sealed(path);
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
+    H5Pset_fapl_core(access, 1, false);
+    if (H5Pset_file_image(access, image.data(), image.size()) < 0) reject("HDF5 takes no image");
+    const Handle file(H5Fopen("checkpoint", H5F_ACC_RDONLY, access), H5Fclose,
                       "open it as a checkpoint");
     const std::vector<double> reals = read<double>(file, "reals");
     const std::vector<std::int64_t> wholes = read<std::int64_t>(file, "wholes");
