@@ -34,6 +34,13 @@ constexpr std::size_t most_legs = 20'000;
 /// Steps that method = "implicit" takes at least, substeps by row: minutes.
 constexpr double most_implicit_steps = 1e9;
 
+std::string too_many_rows(double rows) {
+  return fmt::format(
+      "the test writes {:.0f} rows, and {} are the most: fewer points per stage, or "
+      "fewer stages and cycles",
+      rows, most_rows);
+}
+
 /// 15 under a key that is a strain: per cent are meant.
 void check_strain(TomlReader& table, std::string_view key, double x, const PathReading& reading) {
   if (std::abs(x) <= reading.max_strain) return;
@@ -251,11 +258,7 @@ void check_size(InputFile& file, const std::string& table, const LawInfo& law,
                 const point::PointTest& test) {
   const auto key = [&](std::string_view name) { return join_path(table, name); };
   const std::size_t rows = test.path.row_count();
-  if (rows > most_rows)
-    file.report(key("test.points"),
-                fmt::format("the test writes {} rows, and {} are the most: fewer "
-                            "points per stage, or fewer stages and cycles",
-                            rows, most_rows));
+  if (rows > most_rows) file.report(key("test.points"), too_many_rows(static_cast<double>(rows)));
   const double steps = static_cast<double>(rows) * test.settings.substeps;
   const point::Method method = point::method_for(law, test.settings.method);
   if (method == point::Method::implicit && steps > most_implicit_steps)
@@ -290,11 +293,13 @@ point::Path read_path(TomlReader table, Kind& kind, const PathReading& about) {
   PathReading reading = about;
   std::vector<Stage> stages;
   std::vector<point::LegSpec> legs;
+  double rows = 0.0;
   /// What a stage says, as a part of the path.
   const auto add = [&](TomlReader& at, const StageTable& given, const PathReading& how) {
     if (given.kind == Kind::custom) {
       legs.push_back(leg_of(at, given, how));
     } else {
+      // before they are made: each takes some kilobytes
       const double asked = given.sweeps ? given.rates : given.cycles ? 2.0 * *given.cycles : 1.0;
       if (static_cast<double>(stages.size()) + asked > most_legs) {
         at.report(
@@ -302,6 +307,11 @@ point::Path read_path(TomlReader table, Kind& kind, const PathReading& about) {
             : given.sweeps ? "rates"
                            : "",
             fmt::format("the test has more than {} stages, half cycles and rates", most_legs));
+        return;
+      }
+      rows += asked * given.points;
+      if (rows > most_rows) {
+        at.report("points", too_many_rows(rows));
         return;
       }
       const std::vector<Stage> more = stages_of(at, given, how);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <set>
 
 #include <fmt/core.h>
 #include <hdf5.h>
@@ -121,6 +123,40 @@ class Quiet {
   void* data_ = nullptr;
 };
 
+/// What the steps rely on without asking, of the points of a body: finite numbers, mass, and every
+/// slot in the range of one block, not farther from it than the tile of the block reaches. Throws
+/// std::runtime_error with what is wrong: a checkpoint may be whole and yet be another scene's, or
+/// that of a program with a fault.
+template <int dim>
+void require_sound(const PointsOf<dim>& points, std::size_t body,
+                   const std::vector<PointBlockOf<dim>>& blocks, const GridOf<dim>& grid) {
+  using F = Layout<dim>;
+  const auto fail = [](const char* why) { throw std::runtime_error(why); };
+  std::vector<char> taken(points.slots(), 0);
+  for (const PointBlockOf<dim>& pb : blocks) {
+    const SlotRange& range = pb.range[body];
+    const std::size_t slots = points.slots();
+    if (range.begin % pack_size != 0 || range.count > slots || range.begin > slots ||
+        padded(range.count) > slots - range.begin)
+      fail("its blocks name points that are not there");
+    for (std::size_t s = range.begin; s < range.begin + padded(range.count); ++s) {
+      if (taken[s] != 0) fail("two of its blocks share points");
+      taken[s] = s < range.begin + range.count ? 2 : 1;
+      for (std::size_t f = 0; f < points.fields; ++f)
+        if (!std::isfinite(points[f][s])) fail("a point has a number that is not finite");
+      if (!(points[F::mass][s] > 0.0) || !(points[F::rho][s] > 0.0)) fail("a point has no mass");
+      for (std::size_t a = 0; a < dim; ++a) {
+        const double cell = std::floor(points[F::x + a][s] / grid.h());
+        const int first = GridOf<dim>::first(a, pb.at[a]);
+        if (!(cell >= first - 1 && cell <= first + Shape<dim>::cells[a]))
+          fail("a point lies outside of its block");
+      }
+    }
+  }
+  for (std::size_t s = 0; s < points.slots(); ++s)
+    if (points.id[s] >= 0 && taken[s] != 2) fail("a point belongs to no block");
+}
+
 }  // namespace
 
 template <int dim>
@@ -200,9 +236,21 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
     std::size_t next_real = 0;
     std::size_t next_whole = 3;
     s.must_sort = wholes[1] != 0;
+    std::size_t scalars = 0, counts = 3;
     each_scalar(
-        s, [&](double& x) { x = reals.at(next_real++); },
-        [&](std::int64_t& x) { x = wholes.at(next_whole++); });
+        s, [&](double&) { ++scalars; }, [&](std::int64_t&) { ++counts; });
+    if (reals.size() != scalars || wholes.size() != counts)
+      reject("it has another number of scalars");
+    each_scalar(
+        s, [&](double& x) { x = reals[next_real++]; },
+        [&](std::int64_t& x) { x = wholes[next_whole++]; });
+    const bool moments = std::isfinite(s.time) && s.time >= 0.0 && std::isfinite(s.last_dt) &&
+                         s.last_dt >= 0.0 && std::isfinite(s.drift) && s.drift >= 0.0 &&
+                         s.steps >= 0;
+    const bool signals = std::isfinite(s.signals.speed) && s.signals.speed >= 0.0 &&
+                         std::isfinite(s.signals.signal) && s.signals.signal >= 0.0 &&
+                         std::isfinite(s.signals.viscous_rate) && s.signals.viscous_rate >= 0.0;
+    if (!moments || !signals) reject("its times or speeds are none");
 
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
       PointsOf<dim>& points = s.bodies[b];
@@ -227,7 +275,20 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
         restored[k].range.push_back({static_cast<std::size_t>(row[dim + 2 * b]),
                                      static_cast<std::size_t>(row[dim + 2 * b + 1])});
     }
+    std::set<std::array<int, dim>> places;
+    for (std::size_t k = 0; k < restored.size(); ++k) {
+      const std::int64_t* row = blocks.data() + k * width;
+      for (std::size_t a = 0; a < dim; ++a)
+        if (row[a] < 1 || row[a] > GridOf<dim>::block_of_cell(a, s.grid.cells()[a]))
+          reject("a block lies outside of the box");
+      if (!places.insert(restored[k].at).second) reject("two of its blocks are one");
+    }
+    for (std::size_t b = 0; b < s.bodies.size(); ++b)
+      require_sound(s.bodies[b], b, restored, s.grid);
     const std::vector<double> rests = read<double>(file, "rests");
+    if (rests.size() != 7 * restored.size()) reject("its blocks are not all told of");
+    for (const double x : rests)
+      if (!(x >= 0.0 && x < 1e300)) reject("the rest of a block is none");
     const std::vector<double> pushes = read<double>(file, "pushes");
     auto push = pushes.begin();
     for (std::size_t k = 0; k < restored.size(); ++k) {

@@ -109,9 +109,9 @@ TEST(Limits, SizesThatNothingHasAreRefusedWithTheSizesThatThereAre) {
             "--set domain.size=[1e17, 0.6]: domain.size[0] = 1e+17 m is out of range (width and "
             "height of the box, in space also its depth): numbers here go up to 1e+06 m, whatever "
             "their sign");
-  EXPECT_EQ(complaints(point, {"test.p_end=1e80"}, false).substr(0, 80),
-            "--set test.p_end=1e80: test.p_end = 1e+80 Pa is out of range (mean stress to reach): "
-            "numbers".substr(0, 80));
+  EXPECT_TRUE(complaints(point, {"test.p_end=1e80"}, false)
+                  .starts_with("--set test.p_end=1e80: test.p_end = 1e+80 Pa is out of range (mean "
+                               "stress to reach): numbers here go up to 1e+15 Pa"));
   for (const char* set :
        {"grid.h=1e-20", "scene.end_time=1e300", "scene.gravity=1e7", "body[0].velocity=[1e9, 0.0]",
         "body[0].law.K=1e20", "body[0].initial.p=1e80", "step.dt=1e-30"})
@@ -131,7 +131,7 @@ TEST(Limits, WhatAPointTestTakes) {
       "[initial]\np = 1e5\n[law]\nname = \"modified_cam_clay\"\ncompression = \"v-ln_p\"\n"
       "M = 0.9\nlambda = 0.16\nkappa = 0.06\nnu = 0.3\nGamma = 2.76\nrho_p = 2650.0\n",
       {}, false);
-  EXPECT_NE(cycles.find("the test writes 2000002 rows"), cycles.npos) << cycles;
+  EXPECT_NE(cycles.find("the test writes 2000000 rows"), cycles.npos) << cycles;
   EXPECT_NE(complaints(point,
                        {"test.points=100000", "integration.substeps=1000000",
                         "integration.method=\"implicit\""},

@@ -34,8 +34,9 @@ bool is_finite(const LawPoint<L>& point) {
 template <class L>
 std::string told(const LawPoint<L>& point) {
   char text[160];
-  std::snprintf(text, sizeof text, "p %.17g q %.17g density %.17g state %.17g", pressure(point.stress),
-                mises(point.stress), point.density, L::state.size() > 0 ? point.state.front() : 0.0);
+  std::snprintf(text, sizeof text, "p %.17g q %.17g density %.17g state %.17g",
+                pressure(point.stress), mises(point.stress), point.density,
+                L::state.size() > 0 ? point.state.front() : 0.0);
   return text;
 }
 
@@ -90,7 +91,7 @@ void storm(const LawExample& example, long updates, unsigned seed, Worst& worst)
   std::vector<LawPoint<L>> points(n), next(n);
   std::vector<Sym<double, 6>> strain(n);
   std::vector<double> begun(n, 0.0);  // density
-  std::vector<int> left(n, 0);  // steps of the path of each lane
+  std::vector<int> left(n, 0);        // steps of the path of each lane
   for (long done = 0; done < updates; done += static_cast<long>(n)) {
     for (std::size_t i = 0; i < n; ++i) {
       if (left[i]-- <= 0) {
@@ -179,8 +180,7 @@ void storm(const LawExample& example, long updates, unsigned seed, Worst& worst)
             << example.label << " strain " << largest(strain[i]) << ", volume " << trace(strain[i])
             << "; " << told(before) << " to " << told(after);
         if (d.energy < 0.0)
-          worst.dissipation =
-              std::max(worst.dissipation, -d.energy / (d.slack + round_off));
+          worst.dissipation = std::max(worst.dissipation, -d.energy / (d.slack + round_off));
       }
       // a path that has wandered off the world begins again
       const bool lost = after.apart() || !(pressure(after.stress) > 1e-3 * example.pressure) ||
