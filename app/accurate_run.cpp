@@ -8,6 +8,7 @@
 
 #include "input/resolved_scene.hpp"
 #include "io/json.hpp"
+#include "io/number_text.hpp"
 #include "io/progress.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/accuracy_picture.hpp"
@@ -18,8 +19,7 @@ namespace {
 using Json = io::Json;
 using study::AccurateRun;
 
-/// 2 significant digits: "about" figures must not look exact.
-std::string about(double x) { return fmt::format("{:g}", std::stod(fmt::format("{:.1e}", x))); }
+std::string about(double x) { return fmt::format("{:g}", io::two_digits(x)); }
 std::string percent(double x) { return about(100.0 * x) + " %"; }
 std::string seconds_text(double s) { return s < 60.0 ? about(s) + " s" : io::duration_text(s); }
 
@@ -78,6 +78,7 @@ class AccuracyCommand {
     if (!work_.meets(work_.choice())) throw input::BadInput({refusal(work_)});
     tell_plan();
     const io::ResultFolder folder(request_.folder);
+    const io::FolderClaim claim(folder);
     folder.remove_old_outputs();
     folder.write_file("input.toml", input::resolved_input(request_.file, request_.origin));
     const AccurateRun::End end = work_.run([&](const study::SweepRun& run) { tell_run(run); });

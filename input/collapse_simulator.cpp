@@ -36,7 +36,9 @@ class CollapseSimulator final : public calibration::Simulator {
     const LawInfo& info = find_law(e_.law);
     for (const ParamInfo& p : info.parameters) names_.emplace_back(p.name);
     if (!e_.times.empty()) e_.scene.scene.end_time = e_.times.back();
-    if (!e_.cache.empty()) std::filesystem::create_directories(e_.cache);
+    if (e_.cache.empty()) return;
+    std::filesystem::create_directories(e_.cache);
+    io::remove_old_parts(e_.cache, [](std::string_view name) { return name.ends_with(".json"); });
   }
 
   const std::vector<std::string>& inputs() const override { return names_; }
@@ -119,13 +121,20 @@ class CollapseSimulator final : public calibration::Simulator {
     j["x"] = std::vector<double>(r.x.begin(), r.x.end());
     for (Index c = 0; c < r.y.cols(); ++c)
       j["y"].push_back(std::vector<double>(r.y.col(c).begin(), r.y.col(c).end()));
-    io::write_atomically(file, j.dump());
+    const std::string text = j.dump();
+    io::write_atomically(file, io::fingerprint_of(text) + "\n" + text);
   }
 
   static bool recall(const std::filesystem::path& file, const std::string& key, Response& r) {
     std::ifstream in(file);
     if (!in) return false;
-    const auto j = io::Json::try_parse(std::string(std::istreambuf_iterator<char>(in), {}));
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const std::size_t head = text.find('\n');
+    // what is not as it was written is simulated again, and replaced
+    if (head == std::string::npos ||
+        text.substr(0, head) != io::fingerprint_of(std::string_view(text).substr(head + 1)))
+      return false;
+    const auto j = io::Json::try_parse(std::string_view(text).substr(head + 1));
     if (!j || j->value("input", "") != key) return false;
     const auto x = j->at("x").get<std::vector<double>>();
     const auto y = j->at("y").get<std::vector<std::vector<double>>>();

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "io/atomic_file.hpp"
+#include "io/seal.hpp"
 
 namespace repose::input {
 namespace {
@@ -26,13 +24,8 @@ std::string read_text(const fs::path& file) {
     throw io::IoError(
         file, "there is no such file" + (near.empty() ? "" : "; did you mean " + near + "?"));
   }
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw io::IoError(file, "cannot read", errno);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad() || (in.fail() && !in.eof())) throw io::IoError(file, "cannot read", errno);
-  return std::move(text).str();
+  constexpr std::size_t most_bytes = 16'000'000;  // what is longer was not written by hand
+  return io::read_bytes(file, most_bytes);
 }
 
 /// What nobody would take for a broken number, string, list or table.

@@ -36,6 +36,7 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
   e.y = std::move(compared.y);
   e.abscissae = driven_abscissae(table, e.x, data.x);
   e.lines = data.lines;
+  check_size(file_, table.path(), *out_.info, e.test);
   if (!file_.ok()) return;
   try {
     std::vector<double> start = theta_;
@@ -58,10 +59,16 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
     const bool strained = is_strain_driven(e.test.path);
     const Quantity x = e.x;
     const bool along = e.rows == calibration::Rows::along;
+    // whether the data lie within reach shows in a brief look, or the fit itself will tell
+    constexpr long brief_steps = 200'000;
+    calibration::PointExperiment brief = e;
+    brief.test.settings.max_steps =
+        std::min(brief.test.settings.max_steps,
+                 brief_steps / static_cast<long>(brief.test.path.legs.size()) + 100);
     about.triaxial = e.test.path.legs.back().spec().kind == point::Kind::triaxial;
     target.simulator = calibration::make_point_simulator(std::move(e));
     if (along && strained && target.compare == Compare::interpolate)
-      check_reach(table, x, data, target);
+      check_reach(table, x, data, *calibration::make_point_simulator(std::move(brief)), target);
     if (!file_.ok()) return;
   } catch (const InputError& error) {
     const bool parameter = point::parameter_index(out_.info->parameters, error.key()) >= 0;
@@ -117,11 +124,11 @@ bool TargetReader::is_strain_driven(const point::Path& path) {
 /// Rows far beyond the end of a test that is driven by strain: its end is too short, whatever the
 /// parameters. A tenth of the data's range is more than these move it.
 void TargetReader::check_reach(TomlReader& table, Quantity x, const FitTable& data,
-                               const Target& target) {
+                               const calibration::Simulator& simulator, const Target& target) {
   std::vector<double> inputs = target.inputs;
   std::copy(theta_.begin(), theta_.end(), inputs.begin());
   calibration::Response response;
-  target.simulator->simulate(inputs, {}, response);
+  simulator.simulate(inputs, {}, response);
   if (!response.complete() || response.x.size() < 2) return;
   const double low = response.x.minCoeff(), high = response.x.maxCoeff();
   const double slack = 0.1 * (target.x.maxCoeff() - target.x.minCoeff());

@@ -52,7 +52,7 @@ class TargetReader {
                                        std::vector<double> values);
   static bool is_strain_driven(const point::Path& path);
   void check_reach(TomlReader& table, point::Quantity x, const FitTable& data,
-                   const calibration::Target& target);
+                   const calibration::Simulator& simulator, const calibration::Target& target);
   void read_test(TomlReader& table, point::Quantity x, const FitTable& data,
                  calibration::Compare compare, calibration::PointExperiment& e,
                  calibration::Target& target);

@@ -7,7 +7,8 @@
 namespace repose::input {
 
 void initial_keys(Keys& keys, InitialConditions& initial) {
-  constexpr Range from_one{1.0, positive.upper, false, true};
+  constexpr Range from_one{1.0, 1e6, false, false};
+  constexpr Range ratio{0.0, 1e3, true, false};
   keys.number({"p", "Pa", "mean pressure"}, initial.p);
   keys.number({"sigma_v", "Pa", "vertical stress, with K0, in place of p", positive},
               initial.sigma_v);
@@ -16,19 +17,18 @@ void initial_keys(Keys& keys, InitialConditions& initial) {
   keys.number(
       {"ocr_v", "-", "overconsolidation ratio of vertical stresses, sigma_v,max/sigma_v", from_one},
       initial.ocr_v);
-  keys.number(
-      {"K0_nc", "-", "ratio of radial to axial stress at sigma_v,max (default: K0)", positive},
-      initial.K0_nc);
-  keys.number({"v", "-", "specific volume", Range{1.0, positive.upper}}, initial.v);
+  keys.number({"K0_nc", "-", "ratio of radial to axial stress at sigma_v,max (default: K0)", ratio},
+              initial.K0_nc);
+  keys.number({"v", "-", "specific volume", Range{1.0, 1e3, true, false}}, initial.v);
   std::optional<double> void_ratio;
-  keys.number({"e", "-", "void ratio, in place of v = 1 + e", positive}, void_ratio);
+  keys.number({"e", "-", "void ratio, in place of v = 1 + e", ratio}, void_ratio);
   if (void_ratio) {
     if (TomlReader* const table = keys.reader(); table != nullptr && initial.v)
       table->report("e", fmt::format("{}: give either e or v = 1 + e", table->path_of("e")));
     initial.v = 1.0 + *void_ratio;
   }
   keys.number({"density", "kg/m³", "density", positive}, initial.density);
-  keys.number({"K0", "-", "ratio of radial (horizontal) to axial (vertical) stress", positive},
+  keys.number({"K0", "-", "ratio of radial (horizontal) to axial (vertical) stress", ratio},
               initial.K0);
   keys.components({"sigma", "Pa", "xx, yy, zz, xy, yz, zx, compression positive"}, initial.sigma);
 }

@@ -27,6 +27,20 @@ bool is_strain(Quantity q) {
          q == Quantity::eps_q || q == Quantity::gamma;
 }
 
+/// What a test writes at most: 10^6 rows are a quarter of a gigabyte, and as much again as text.
+constexpr std::size_t most_rows = 1'000'000;
+/// Stages, half cycles and rates of a test; each is some kilobytes before it is driven.
+constexpr std::size_t most_legs = 20'000;
+/// Steps that method = "implicit" takes at least, substeps by row: minutes.
+constexpr double most_implicit_steps = 1e9;
+
+std::string too_many_rows(double rows) {
+  return fmt::format(
+      "the test writes {:.0f} rows, and {} are the most: fewer points per stage, or "
+      "fewer stages and cycles",
+      rows, most_rows);
+}
+
 /// 15 under a key that is a strain: per cent are meant.
 void check_strain(TomlReader& table, std::string_view key, double x, const PathReading& reading) {
   if (std::abs(x) <= reading.max_strain) return;
@@ -240,6 +254,19 @@ point::Path history_of(TomlReader& table, const TestTable& test, const PathReadi
 
 }  // namespace
 
+void check_size(InputFile& file, const std::string& table, const LawInfo& law,
+                const point::PointTest& test) {
+  const auto key = [&](std::string_view name) { return join_path(table, name); };
+  const std::size_t rows = test.path.row_count();
+  if (rows > most_rows) file.report(key("test.points"), too_many_rows(static_cast<double>(rows)));
+  const double steps = static_cast<double>(rows) * test.settings.substeps;
+  const point::Method method = point::method_for(law, test.settings.method);
+  if (method == point::Method::implicit && steps > most_implicit_steps)
+    file.report(key("integration.substeps"),
+                fmt::format("{} rows of {} substeps are {:.2g} steps, and {:g} are the most", rows,
+                            test.settings.substeps, steps, most_implicit_steps));
+}
+
 InitialConditions read_initial_conditions(TomlReader table) {
   InitialConditions initial;
   ReadKeys keys(std::move(table));
@@ -266,11 +293,27 @@ point::Path read_path(TomlReader table, Kind& kind, const PathReading& about) {
   PathReading reading = about;
   std::vector<Stage> stages;
   std::vector<point::LegSpec> legs;
+  double rows = 0.0;
   /// What a stage says, as a part of the path.
   const auto add = [&](TomlReader& at, const StageTable& given, const PathReading& how) {
     if (given.kind == Kind::custom) {
       legs.push_back(leg_of(at, given, how));
     } else {
+      // before they are made: each takes some kilobytes
+      const double asked = given.sweeps ? given.rates : given.cycles ? 2.0 * *given.cycles : 1.0;
+      if (static_cast<double>(stages.size()) + asked > most_legs) {
+        at.report(
+            given.cycles   ? "cycles"
+            : given.sweeps ? "rates"
+                           : "",
+            fmt::format("the test has more than {} stages, half cycles and rates", most_legs));
+        return;
+      }
+      rows += asked * given.points;
+      if (rows > most_rows) {
+        at.report("points", too_many_rows(rows));
+        return;
+      }
       const std::vector<Stage> more = stages_of(at, given, how);
       stages.insert(stages.end(), more.begin(), more.end());
     }
@@ -351,6 +394,7 @@ PointTestFile read_point_test(InputFile& file) {
                 fmt::format("the stress of {} ({}) follows the strain rate at once, so there is no "
                             "rate to integrate: use method = \"implicit\"",
                             law.name, law.option));
+  check_size(file, "", law, result.test);
   try {
     point::check_start(law, checked_parameters(result.law), result.test);
   } catch (const InputError& error) {

@@ -31,6 +31,11 @@ struct PathReading {
 /// that is wrong; a history's table that cannot be used is bad input too.
 PointTestFile read_point_test(InputFile& file);
 
+/// Reports what would take more memory or time than a test of one point is worth: rows of output,
+/// and steps that method = "implicit" is bound to take. table: "" or that of a fit's target.
+void check_size(InputFile& file, const std::string& table, const LawInfo& law,
+                const point::PointTest& test);
+
 /// p or sigma_v, ocr or ocr_v with K0_nc, v or e, density, K0, sigma.
 InitialConditions read_initial_conditions(TomlReader table);
 

@@ -50,7 +50,8 @@ constexpr std::array wall_kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kin
                                 Wall::Kind::periodic};
 
 void friction_key(Keys& keys, double& friction) {
-  keys.number({"friction", "-", "Coulomb coefficient", not_negative, required}, friction);
+  keys.number({"friction", "-", "Coulomb coefficient", Range{0.0, 1e3, false, false}, required},
+              friction);
 }
 
 void speed_key(Keys& keys, double& speed) {
@@ -259,9 +260,10 @@ void step_keys(Keys& keys, mpm::Scene& scene) {
   keys.integer(Key{"order", "-", "of the transfer, 1 is pic"}.only_if(
                    has_order, "only step.transfer = \"xpic\" and \"fmpm\" have an order"),
                {1, 100}, scene.order);
-  keys.number({"pressure_averaging", "-",
-               "of neighbouring points, per unit of shear strain; 0 for none", not_negative},
-              scene.pressure_averaging);
+  keys.number(
+      {"pressure_averaging", "-", "of neighbouring points, per unit of shear strain; 0 for none",
+       Range{0.0, 1e9, false, false}},
+      scene.pressure_averaging);
   if (table != nullptr && table->has("sleep_speed")) {
     table->expect("sleep_speed");
     table->report(

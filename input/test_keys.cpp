@@ -84,7 +84,8 @@ void shared_keys(Keys& keys, StageTable& stage) {
   keys.number({"rate", "1/s", "strain rate", positive}, stage.rate);
   stress_rate_key(keys, stage);
   keys.integer({"points", "-", "rows of output"}, {1, 1000000}, stage.points);
-  keys.number({"strain_limit", "-", "how far a stage may strain in search of its end", positive},
+  keys.number({"strain_limit", "-", "how far a stage may strain in search of its end",
+               Range{0.0, 1e3, true, false}},
               stage.strain_limit);
   keys.choice({"control", "-", "what drives a stage towards its end"}, control_words,
               stage.control);
@@ -233,8 +234,9 @@ void integration_keys(Keys& keys, point::Settings& settings) {
   std::int64_t most = settings.max_steps;
   keys.integer({"max_steps", "-", "steps per stage"}, {1, 1000000000}, most);
   settings.max_steps = most;
-  keys.number({"max_strain", "-", "a path that strains further has run away", positive},
-              settings.max_strain);
+  keys.number(
+      {"max_strain", "-", "a path that strains further has run away", Range{0.0, 1e3, true, false}},
+      settings.max_strain);
 }
 
 }  // namespace repose::input

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "input/quantity_range.hpp"
+
 namespace repose::input {
 namespace {
 
@@ -70,6 +72,12 @@ std::optional<double> TomlReader::checked(const toml::node& node, std::string_vi
     file_->report(at, fmt::format("{} = {} is out of range: {} must be {}", at,
                                   with_unit(fmt::format("{}", *x), key.unit),
                                   key.doc.empty() ? at : key.doc, expected_number(key)));
+    return {};
+  }
+  if (const std::string why = why_senseless(*x, key.unit, key.range); !why.empty()) {
+    file_->report(at,
+                  fmt::format("{} = {} is out of range{}: {}", at,
+                              with_unit(fmt::format("{}", *x), key.unit), doc_of(key.doc), why));
     return {};
   }
   return x;

@@ -6,6 +6,7 @@
 
 #include "io/atomic_file.hpp"
 #include "io/json.hpp"
+#include "io/seal.hpp"
 #include "io/vtkhdf.hpp"
 
 namespace repose::io {
@@ -29,10 +30,9 @@ std::vector<FrameEntry> read_frame_series(const std::filesystem::path& series) {
 }
 
 Frame read_frame(const std::filesystem::path& file) {
-  errno = 0;
-  if (!std::ifstream(file)) throw IoError(file, "cannot read", errno);
+  std::string image = read_sealed(file);
   try {
-    return read_vtkhdf(file);
+    return read_vtkhdf(image);
   } catch (const std::runtime_error& error) {
     throw IoError(file, std::string("not a frame: ") + error.what());
   }

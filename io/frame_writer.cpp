@@ -7,6 +7,7 @@
 
 #include "io/frame_reader.hpp"
 #include "io/json.hpp"
+#include "io/seal.hpp"
 #include "io/vtkhdf.hpp"
 
 namespace repose::io {
@@ -74,7 +75,7 @@ fs::path FrameWriter::write(const FrameView& frame) {
   const fs::path path = folder_ / name;
   std::string image;
   try {
-    image = vtkhdf_image(frame);
+    image = sealed(vtkhdf_image(frame));
   } catch (const std::invalid_argument&) {
     throw;
   } catch (const std::runtime_error& error) {

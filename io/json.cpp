@@ -98,11 +98,26 @@ Json Json::object() {
   return json;
 }
 
+namespace {
+
+/// "line 2, column 7": of a byte, counted from 1.
+std::string place_of(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, byte == 0 ? 0 : std::min(byte - 1, text.size()));
+  const auto lines = std::count(before.begin(), before.end(), '\n');
+  const std::size_t start = before.rfind('\n');
+  const std::size_t column = before.size() - (start == before.npos ? 0 : start + 1);
+  return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column + 1);
+}
+
+}  // namespace
+
 Json Json::parse(std::string_view text) {
   try {
     return from_text_tree(Text::parse(text));
-  } catch (const Text::exception& error) {
-    throw Error(error.what());
+  } catch (const Text::parse_error& error) {
+    throw Error(place_of(text, error.byte) + " is no JSON");
+  } catch (const Text::exception&) {
+    throw Error("a number is beyond what a double holds");
   }
 }
 

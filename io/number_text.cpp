@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <system_error>
 
@@ -122,6 +124,12 @@ std::string csv_cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2)
     text.insert(at, 1, '"');
   return '"' + text + '"';
+}
+
+double two_digits(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1e", x);
+  return std::strtod(text, nullptr);  // never throws, whatever the exponent
 }
 
 std::string_view trimmed(std::string_view text) {

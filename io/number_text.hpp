@@ -15,6 +15,9 @@ std::string shown(std::string_view cell);
 /// A text as a cell of a CSV table: in quotes where it needs them (RFC 4180).
 std::string csv_cell(std::string text);
 
+/// To two significant digits, any double: "about" figures must not look exact.
+double two_digits(double x);
+
 /// Without blanks, tabs and no-break spaces around it.
 std::string_view trimmed(std::string_view text);
 

@@ -20,14 +20,19 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "io/fingerprint.hpp"
+#include "io/json.hpp"
+#include "io/seal.hpp"
+
 namespace repose::io {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-// summary.json comes first: it is what declares a result complete.
-constexpr std::array<std::string_view, 61> outputs{"summary.json",
+// manifest.json and summary.json come first: they declare a result complete.
+constexpr std::array<std::string_view, 62> outputs{"manifest.json",
+                                                   "summary.json",
                                                    "checkpoint_previous.h5",
                                                    "sweep.csv",
                                                    "sweep.svg",
@@ -173,10 +178,72 @@ void ResultFolder::remove_old_outputs() const {
 
 void ResultFolder::remove_old_parts() const {
   io::remove_old_parts(folder_, [](std::string_view name) {
-    return name == "input.toml" || std::find(outputs.begin(), outputs.end(), name) != outputs.end();
+    return name == "input.toml" || name == "starts.jsonl" || name == "report.html" ||
+           std::find(outputs.begin(), outputs.end(), name) != outputs.end();
   });
   io::remove_old_parts(frames(),
                        [](std::string_view name) { return is_frame_file(std::string(name)); });
+}
+
+namespace {
+
+constexpr const char* manifest_name = "manifest.json";
+
+Json entry_of(const fs::path& file, bool with_checksum) {
+  std::error_code error;
+  if (!with_checksum) {
+    const std::uintmax_t bytes = fs::file_size(file, error);
+    return error ? Json() : Json{{"bytes", static_cast<std::int64_t>(bytes)}};
+  }
+  if (!fs::is_regular_file(file, error)) return {};
+  const std::string text = read_bytes(file);
+  return {{"bytes", static_cast<std::int64_t>(text.size())}, {"checksum", fingerprint_of(text)}};
+}
+
+}  // namespace
+
+void ResultFolder::seal() const {
+  Json files = Json::object();
+  const auto add = [&](const std::string& name, bool with_checksum) {
+    const Json entry = entry_of(file(name), with_checksum);
+    if (!entry.is_null()) files[name] = entry;
+  };
+  add("input.toml", true);
+  for (const std::string_view name : outputs)
+    if (name != manifest_name) add(std::string(name), true);
+  std::error_code error;
+  std::vector<std::string> frame_files;
+  for (fs::directory_iterator it(frames(), error), end; !error && it != end; it.increment(error))
+    if (const std::string name = it->path().filename().string(); is_frame_file(name))
+      frame_files.push_back("frames/" + name);
+  std::sort(frame_files.begin(), frame_files.end());
+  for (const std::string& name : frame_files) add(name, false);
+  write_file(manifest_name, Json{{"files", files}}.dump(1) + "\n");
+}
+
+std::string ResultFolder::damage() const {
+  std::ifstream in(file(manifest_name), std::ios::binary);
+  const auto manifest = Json::try_parse(std::string(std::istreambuf_iterator<char>(in), {}));
+  const Json* const files = manifest ? manifest->find("files") : nullptr;
+  if (files == nullptr || !files->is_object())
+    return in.is_open() ? "manifest.json is damaged" : "there is no manifest.json";
+  std::vector<std::string> names;
+  for (const auto& [name, entry] : files->items()) names.push_back(name);
+  return damage(names);
+}
+
+std::string ResultFolder::damage(std::span<const std::string> names) const {
+  std::ifstream in(file(manifest_name), std::ios::binary);
+  const auto manifest = Json::try_parse(std::string(std::istreambuf_iterator<char>(in), {}));
+  const Json* const files = manifest ? manifest->find("files") : nullptr;
+  for (const std::string& name : names) {
+    const Json* const entry = files != nullptr && files->is_object() ? files->find(name) : nullptr;
+    if (entry == nullptr) return fmt::format("{} is not in manifest.json", name);
+    const Json now = entry_of(file(name), entry->find("checksum") != nullptr);
+    if (now.is_null()) return fmt::format("{} is missing", name);
+    if (!(now == *entry)) return fmt::format("{} is not as it was written", name);
+  }
+  return "";
 }
 
 FolderClaim::FolderClaim(const ResultFolder& folder) : path_(folder.file(".repose-lock")) {

@@ -36,6 +36,17 @@ class ResultFolder {
   /// Removes only what killed processes left of files that were being written.
   void remove_old_parts() const;
 
+  /// Declares the result complete: writes manifest.json with the length and the checksum of every
+  /// file of it (of frames, which have their own, the length). Errors: IoError.
+  void seal() const;
+
+  /// What is not as seal() found it: "series.csv is not as it was written"; "there is no
+  /// manifest.json" if it never did. "" for a result that is whole.
+  std::string damage() const;
+
+  /// The same of some files only; those that seal() did not find are damaged.
+  std::string damage(std::span<const std::string> names) const;
+
   /// The names that repose may write into a result folder, input.toml and frames/ aside.
   static std::span<const std::string_view> output_names();
 

@@ -260,6 +260,9 @@ Numbers read_numbers(hid_t group, const std::string& name) {
   if (rank < 1 || rank > 2) return {};
   std::array<hsize_t, 2> size{0, 1};
   check(H5Sget_simple_extent_dims(space, size.data(), nullptr), "read the shape of " + name);
+  constexpr hsize_t most = hsize_t{1} << 32;  // what no frame has room for
+  if (size[0] > most || size[1] > most || size[0] * size[1] > most)
+    throw std::runtime_error(name + " claims more values than a frame can hold");
   Numbers numbers{size[0], size[1], std::vector<double>(size[0] * size[1])};
   check(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.values.data()),
         "read " + name);
@@ -286,9 +289,12 @@ std::vector<std::string> names_in(hid_t group) {
 
 }  // namespace
 
-Frame read_vtkhdf(const std::filesystem::path& path) {
+Frame read_vtkhdf(std::string& image) {
   const SilentErrors silent;
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "open it");
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "set up memory");
+  check(H5Pset_fapl_core(access, 1, false), "set up memory");
+  check(H5Pset_file_image(access, image.data(), image.size()), "take its bytes");
+  const Handle file(H5Fopen("frame", H5F_ACC_RDONLY, access), H5Fclose, "open it");
   const Handle root(H5Gopen2(file, "VTKHDF", H5P_DEFAULT), H5Gclose, "find VTKHDF");
   Frame frame;
   const Numbers points = read_numbers(root, "Points");

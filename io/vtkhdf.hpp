@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "io/frame_reader.hpp"
@@ -16,8 +15,8 @@ namespace repose::io {
 /// std::runtime_error with HDF5's own reason (in practice: out of memory).
 std::string vtkhdf_image(const FrameView& frame);
 
-/// Reads such a file back; read_frame() is the way to it.
-/// Errors: std::runtime_error with HDF5's own reason, or that it is no VTKHDF file of points.
-Frame read_vtkhdf(const std::filesystem::path& path);
+/// Reads such bytes back; read_frame() is the way to it.
+/// Errors: std::runtime_error with HDF5's own reason, or that they are no VTKHDF file of points.
+Frame read_vtkhdf(std::string& image);
 
 }  // namespace repose::io

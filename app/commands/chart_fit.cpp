@@ -63,6 +63,7 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
   const std::string input =
       fmt::format("# The input of this result, by repose {}.\n{}{}", input::program_identity(),
                   task.input, input::chart_text(settings.max_evaluations, settings.seed));
+  const io::FolderClaim claim(folder);
   if (options.resume && study::is_finished(folder, input)) return {io::ExitCode::done, true};
   folder.remove_old_outputs();
   folder.write_file("input.toml", input);
@@ -86,6 +87,7 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
                    {"seed", settings.seed},    {"evaluations", settings.max_evaluations},
                    {"first_objective", first}, {"algorithms", runs.size()}};
   folder.write_file("summary.json", summary.dump(2) + "\n");
+  folder.seal();
   if (options.json) fmt::print("{}\n", summary.dump());
   if (!options.quiet && !options.json)
     fmt::print(

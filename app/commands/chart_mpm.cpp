@@ -56,6 +56,7 @@ class MpmChart {
                                       : std::filesystem::path(options_.output));
     const std::string input = input::resolved_input(scene_, origin_line(input_.name(), options_)) +
                               input::chart_text(sweep_);
+    const io::FolderClaim claim(folder);
     if (options_.resume && study::is_finished(folder, input)) return {io::ExitCode::done, true};
     folder.remove_old_outputs();
     folder.write_file("input.toml", input);
@@ -109,6 +110,13 @@ class MpmChart {
  private:
   /// The scene with every combination of what [chart.vary] lists.
   std::vector<study::SceneVariant> variants_of(const std::string& file) const {
+    std::size_t count = 1;
+    for (const input::VariedKey& varied : sweep_.vary) {
+      count *= varied.values.size();
+      if (count > study::most_chart_scenes)
+        throw InputError("chart.vary", fmt::format("chart.vary makes more than {} scenes",
+                                                   study::most_chart_scenes));
+    }
     std::vector<study::SceneVariant> variants{{scene_, {}}};
     for (const input::VariedKey& varied : sweep_.vary) {
       std::vector<study::SceneVariant> more;
@@ -197,6 +205,7 @@ class MpmChart {
                  {"errors", errors},
                  {"warnings", warnings()}};
     folder.write_file("summary.json", summary.dump(2) + "\n");
+    folder.seal();
     if (options_.json) fmt::print("{}\n", summary.dump());
   }
 

@@ -23,6 +23,7 @@ ChartEnd chart_point(const CommonOptions& options, const std::string& file, bool
   const std::string input =
       fmt::format("# The input of this result, by repose {}.\n{}", version_string,
                   input::chart_text(input::ChartKind::point, quick));
+  const io::FolderClaim claim(folder);
   if (options.resume && study::is_finished(folder, input)) return {io::ExitCode::done, true};
   folder.remove_old_outputs();
   folder.write_file("input.toml", input);
@@ -58,6 +59,7 @@ ChartEnd chart_point(const CommonOptions& options, const std::string& file, bool
     }
   }
   folder.write_file("summary.json", summary.dump(2) + "\n");
+  folder.seal();
   if (options.json) fmt::print("{}\n", summary.dump());
   if (speak)
     fmt::print("{}: chart.csv, chart.svg, error_map.csv, error_map.svg, tangent.csv, tangent.svg\n",

@@ -56,6 +56,7 @@ class Set {
 
   io::ExitCode run() {
     const io::ResultFolder folder(folder_);
+    const io::FolderClaim claim(folder);
     folder.remove_old_outputs();
     folder.write_file("input.toml", fmt::format("# The charts of this folder, by repose {}.\n{}",
                                                 version_string, set_.text));

@@ -1,3 +1,7 @@
+#include "app/commands/check.hpp"
+
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "app/commands/chart.hpp"
@@ -10,6 +14,7 @@
 #include "input/read_stability.hpp"
 #include "input/shipped_input.hpp"
 #include "io/json.hpp"
+#include "io/number_text.hpp"
 #include "io/progress.hpp"
 #include "mpm/study/estimate.hpp"
 
@@ -23,9 +28,6 @@ std::string grouped(double x) {
   return digits;
 }
 
-/// 2 significant digits: "about" figures must not look exact.
-double rounded(double x) { return std::stod(fmt::format("{:.1e}", x)); }
-
 /// 192 x 90
 std::string cells_of(const mpm::Scene& scene) {
   std::string text;
@@ -34,12 +36,18 @@ std::string cells_of(const mpm::Scene& scene) {
   return text;
 }
 
-io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options) {
+void tell(const std::vector<std::string>& warnings, const CommonOptions& options) {
+  if (options.quiet) return;
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options, Looks looks) {
   const input::SceneFile file = input::read_scene(input);
   const mpm::Scene& scene = file.scene;
   mpm::Estimate estimate;
   try {
-    estimate = mpm::estimate(scene, options.threads);
+    estimate = looks == Looks::measure ? mpm::estimate(scene, options.threads)
+                                       : mpm::count_estimate(scene);
   } catch (const InputError& error) {
     input.report(error);
     input.throw_if_bad();
@@ -71,10 +79,11 @@ io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options) 
         "  run time    about {}\n",
         input.name(), scene.name, grouped(static_cast<double>(estimate.points)),
         grouped(static_cast<double>(estimate.live_cells)), cells_of(scene), estimate.first_dt_s,
-        scene.dt ? ", fixed" : "", grouped(rounded(estimate.steps)), scene.end_time,
+        scene.dt ? ", fixed" : "", grouped(io::two_digits(estimate.steps)), scene.end_time,
         estimate.memory_MB,
-        io::duration_text(estimate.seconds < 10.0 ? rounded(estimate.seconds) : estimate.seconds));
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+        io::duration_text(estimate.seconds < 10.0 ? io::two_digits(estimate.seconds)
+                                                  : estimate.seconds));
+  tell(warnings, options);
   return io::ExitCode::done;
 }
 
@@ -105,7 +114,7 @@ io::ExitCode check_point_test(input::InputFile& input, const CommonOptions& opti
         input.name(), file.name, law_title(file.law), file.test.path.legs.size(),
         point::name_of(point::method_for(find_law(file.law), file.test.settings.method)));
   if (!options.quiet) print_tables(input.tables());
-  for (const std::string& note : file.notes) fmt::print(stderr, "warning: {}\n", note);
+  tell(file.notes, options);
   return io::ExitCode::done;
 }
 
@@ -119,7 +128,7 @@ io::ExitCode check_fit(const std::string& path, const CommonOptions& options) {
         "  targets          {}\n",
         path, file.name, law_title(file.law), file.free.size(), file.targets.size());
   if (!options.quiet) print_tables(file.tables);
-  for (const std::string& note : file.notes) fmt::print(stderr, "warning: {}\n", note);
+  tell(file.notes, options);
   return io::ExitCode::done;
 }
 
@@ -140,7 +149,9 @@ io::ExitCode check_charts(const std::string& path, const CommonOptions& options)
   return io::ExitCode::done;
 }
 
-io::ExitCode check_file(const std::string& path, const CommonOptions& options) {
+}  // namespace
+
+io::ExitCode check_file(const std::string& path, const CommonOptions& options, Looks looks) {
   input::InputFile input = input::open_input(path, options.sets);
   if (input::is_chart_set(input)) return check_charts(path, options);
   const input::FileKind kind = input::kind_of(input);
@@ -154,7 +165,7 @@ io::ExitCode check_file(const std::string& path, const CommonOptions& options) {
   }
   switch (kind) {
     case input::FileKind::scene:
-      return check_scene(input, options);
+      return check_scene(input, options, looks);
     case input::FileKind::point_test:
       return check_point_test(input, options);
     case input::FileKind::fit:
@@ -164,8 +175,6 @@ io::ExitCode check_file(const std::string& path, const CommonOptions& options) {
   }
   return io::ExitCode::bad_input;
 }
-
-}  // namespace
 
 Command add_check(CLI::App& root) {
   Verb verb(root, "check", "Validate an input file, and tell what running it will take");

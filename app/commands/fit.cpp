@@ -53,6 +53,7 @@ class FitRun {
   }
 
   io::ExitCode run() {
+    const io::FolderClaim claim(folder_);
     std::vector<calibration::StartResult> done;
     for (const std::string& dir : arguments_.merge) {
       const std::filesystem::path journal = std::filesystem::path(dir) / journal_name;
@@ -65,13 +66,14 @@ class FitRun {
       const std::filesystem::path own = folder_.file(journal_name);
       study::merge_into(done, study::read_journal(own, file_), own.string());
     }
+    // the journal first: a kill in between must not lose the starts that it holds
+    std::string journal = study::journal_head(file_);
+    for (const auto& s : done) journal += study::journal_line(s);
+    folder_.write_file(journal_name, journal);
     folder_.remove_old_outputs();
     folder_.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n# "
                                                  "From {}\n{}",
                                                  version_string, arguments_.file, file_.resolved));
-    std::string journal = study::journal_head(file_);
-    for (const auto& s : done) journal += study::journal_line(s);
-    folder_.write_file(journal_name, journal);
     for (const std::string& note : file_.notes)
       if (!options_.quiet) fmt::print(stderr, "note: {}\n", note);
 
@@ -158,6 +160,7 @@ class FitRun {
       if (report.contains(key)) s[key] = report[key];
     s["input"] = file_.resolved;
     folder_.write_file("summary.json", s.dump(2) + "\n");
+    folder_.seal();
   }
 
   /// A picture that cannot be drawn is a warning: the figures are in fit.json.

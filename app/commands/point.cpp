@@ -91,6 +91,7 @@ class PointRun {
     const io::ResultFolder folder(options_.output.empty()
                                       ? io::ResultFolder::default_path(file_.name)
                                       : std::filesystem::path(options_.output));
+    const io::FolderClaim claim(folder);
     folder.remove_old_outputs();
     const toml::table input = resolved(input_, file_);
     write(folder, "input.toml", toml_text(input, origin_));

@@ -79,11 +79,26 @@ std::string words_for(const study::GrainCollapse& run) {
                      last.kinetic_J_per_m, last.time_s, last.step);
 }
 
-/// The figures of parts that an interrupted run on the same input had done; null if there are none.
+/// The figures of parts that an interrupted run on the same input had done, and whose files are as
+/// they were written; null if there are none.
 Json parts_done(const io::ResultFolder& folder, const std::string& input) {
   if (study::text_of(folder.file("input.toml")) != input) return {};
+  std::vector<std::string> summary_file{"summary.json"};
+  if (!folder.damage(summary_file).empty()) return {};
   const auto summary = Json::try_parse(study::text_of(folder.file("summary.json")));
-  return summary ? summary->value("parts", Json()) : Json();
+  Json parts = summary ? summary->value("parts", Json()) : Json();
+  std::vector<std::string> damaged;
+  if (parts.is_object())
+    for (const auto& [name, figures] : parts.items())
+      if (const std::string why =
+              folder.damage(figures.value("files", std::vector<std::string>{"of the part"}));
+          !why.empty()) {
+        fmt::print(stderr, "warning: {}: {}, so {} is made again\n", folder.path().string(), why,
+                   name);
+        damaged.push_back(name);
+      }
+  for (const std::string& name : damaged) parts.erase(name);
+  return parts;
 }
 
 class Maps {
@@ -105,6 +120,8 @@ class Maps {
   }
 
   ChartEnd run() {
+    const io::FolderClaim claim(folder_);
+    folder_.remove_old_parts();
     if (options_.resume && study::is_finished(folder_, text_)) return {io::ExitCode::done, true};
     if (options_.resume) parts_ = parts_done(folder_, text_);
     if (parts_.is_null()) folder_.remove_old_outputs();
@@ -215,6 +232,7 @@ class Maps {
                        {"quick", input_.quick},    {"cpu_s", cpu_s},      {"wall_s", wall_s},
                        {"files", files()},         {"parts", parts_}};
     folder_.write_file("summary.json", summary.dump(2) + "\n");
+    folder_.seal();
     return summary;
   }
 

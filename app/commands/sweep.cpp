@@ -1,5 +1,6 @@
 #include "app/commands/sweep.hpp"
 
+#include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -26,12 +27,15 @@ using io::Json;
 /// Every run, read and checked before the first is begun: `read` fills a case from the file with
 /// what the run sets. One that cannot be used is a row of the table; if none can, the first one's
 /// mistakes are the file's.
+/// seconds: after so many no further run is read.
 template <class Case, class Read>
 std::vector<Case> cases_of(const input::InputFile& file, const input::ParameterSets& sets,
-                           const Read& read) {
+                           const Read& read, double seconds = HUGE_VAL) {
   std::vector<Case> cases;
   std::size_t refused = 0;
+  const double begun = study::usage().wall_s;
   for (std::size_t k = 0; k < sets.values.size(); ++k) {
+    if (k > 0 && study::usage().wall_s - begun > seconds) break;
     Case& one = cases.emplace_back();
     one.values = sets.shown(k);
     try {
@@ -43,9 +47,9 @@ std::vector<Case> cases_of(const input::InputFile& file, const input::ParameterS
     }
   }
   if (refused == cases.size())
-    throw input::BadInput(
-        {fmt::format("[sweep]: none of its {} runs can be used; the first:", cases.size()),
-         cases.front().refusal});
+    throw input::BadInput({fmt::format("{}: [sweep]: none of its {} runs can be used; the first:",
+                                       to_string(file.origin("sweep")), cases.size()),
+                           cases.front().refusal});
   return cases;
 }
 
@@ -90,6 +94,9 @@ class SweepFolder {
   bool begin() const {
     const bool goes_on = options_.resume && study::text_of(folder_.file("input.toml")) == input_;
     if (!goes_on) folder_.remove_old_outputs();
+    folder_.remove_old_parts();
+    std::error_code ignored;
+    std::filesystem::remove(folder_.file("manifest.json"), ignored);
     folder_.write_file("input.toml", input_);
     return goes_on;
   }
@@ -129,7 +136,10 @@ class SweepFolder {
                  {"cpu_s", after.cpu_s - before_.cpu_s}};
     summary.update(further);
     folder_.write_file("summary.json", summary.dump(2) + "\n");
-    if (!interrupted) std::filesystem::remove(folder_.file("finished.jsonl"));
+    if (!interrupted) {
+      std::filesystem::remove(folder_.file("finished.jsonl"));
+      folder_.seal();
+    }
     if (options_.json) {
       fmt::print("{}\n", summary.dump());
     } else if (!options_.quiet) {
@@ -228,9 +238,11 @@ io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& fi
 
 void check_sweep(const std::string& path, const input::ParameterSets& sets, bool is_scene,
                  const CommonOptions& options) {
-  std::size_t refused = 0, first = 0;
+  constexpr double seconds = 0.5;  // a sweep of 20 000 scenes takes longer to read through
+  std::size_t refused = 0, first = 0, looked_at = 0;
   std::string reason;
   const auto look = [&](const auto& cases) {
+    looked_at = cases.size();
     for (std::size_t k = 0; k < cases.size(); ++k) {
       if (cases[k].refusal.empty()) continue;
       if (refused++ > 0) continue;
@@ -241,15 +253,19 @@ void check_sweep(const std::string& path, const input::ParameterSets& sets, bool
   if (is_scene)
     look(cases_of<study::SceneCase>(
         input::open_scene(path, options.sets), sets,
-        [](study::SceneCase&, input::InputFile& run, std::size_t) { input::read_scene(run); }));
+        [](study::SceneCase&, input::InputFile& run, std::size_t) { input::read_scene(run); },
+        seconds));
   else
-    look(cases_of<study::PointCase>(input::open_test(path, options.sets), sets,
-                                    [](study::PointCase&, input::InputFile& run, std::size_t) {
-                                      input::read_point_test(run);
-                                    }));
+    look(cases_of<study::PointCase>(
+        input::open_test(path, options.sets), sets,
+        [](study::PointCase&, input::InputFile& run, std::size_t) { input::read_point_test(run); },
+        seconds));
   if (!options.quiet)
-    fmt::print("  sweep        {} runs over {}\n", sets.values.size(), fmt::join(sets.keys, ", "));
-  if (refused > 0)
+    fmt::print("  sweep        {} runs over {}{}\n", sets.values.size(), fmt::join(sets.keys, ", "),
+               looked_at < sets.values.size()
+                   ? fmt::format("; the first {} were looked at", looked_at)
+                   : "");
+  if (refused > 0 && !options.quiet)
     fmt::print(stderr, "warning: {} of them cannot be used; the first is run {}: {}\n", refused,
                first, reason);
 }

@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <set>
 
 #include <fmt/core.h>
 #include <hdf5.h>
 
 #include "io/atomic_file.hpp"
+#include "io/seal.hpp"
 #include "mpm/step/simulation_impl.hpp"
 
 namespace repose::mpm {
@@ -61,7 +64,9 @@ template <class T>
 std::vector<T> read(hid_t file, const std::string& name) {
   const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, ("find " + name).c_str());
   const Handle space(H5Dget_space(set), H5Sclose, "read a data space");
-  std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (count < 0) throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
+  std::vector<T> values(static_cast<std::size_t>(count));
   if (!values.empty() &&
       H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
@@ -127,6 +132,40 @@ class Quiet {
   void* data_ = nullptr;
 };
 
+/// What the steps rely on without asking, of the points of a body: finite numbers, mass, and every
+/// slot in the range of one block, not farther from it than the tile of the block reaches. Throws
+/// std::runtime_error with what is wrong: a checkpoint may be whole and yet be another scene's, or
+/// that of a program with a fault.
+template <int dim>
+void require_sound(const PointsOf<dim>& points, std::size_t body,
+                   const std::vector<PointBlockOf<dim>>& blocks, const GridOf<dim>& grid) {
+  using F = Layout<dim>;
+  const auto fail = [](const char* why) { throw std::runtime_error(why); };
+  std::vector<char> taken(points.slots(), 0);
+  for (const PointBlockOf<dim>& pb : blocks) {
+    const SlotRange& range = pb.range[body];
+    const std::size_t slots = points.slots();
+    if (range.begin % pack_size != 0 || range.count > slots || range.begin > slots ||
+        padded(range.count) > slots - range.begin)
+      fail("its blocks name points that are not there");
+    for (std::size_t s = range.begin; s < range.begin + padded(range.count); ++s) {
+      if (taken[s] != 0) fail("two of its blocks share points");
+      taken[s] = s < range.begin + range.count ? 2 : 1;
+      for (std::size_t f = 0; f < points.fields; ++f)
+        if (!std::isfinite(points[f][s])) fail("a point has a number that is not finite");
+      if (!(points[F::mass][s] > 0.0) || !(points[F::rho][s] > 0.0)) fail("a point has no mass");
+      for (std::size_t a = 0; a < dim; ++a) {
+        const double cell = std::floor(points[F::x + a][s] / grid.h());
+        const int first = GridOf<dim>::first(a, pb.at[a]);
+        if (!(cell >= first - 1 && cell <= first + Shape<dim>::cells[a]))
+          fail("a point lies outside of its block");
+      }
+    }
+  }
+  for (std::size_t s = 0; s < points.slots(); ++s)
+    if (points.id[s] >= 0 && taken[s] != 2) fail("a point belongs to no block");
+}
+
 }  // namespace
 
 template <int dim>
@@ -168,7 +207,7 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   std::string image(static_cast<std::size_t>(size), '\0');
   if (H5Fget_file_image(file, image.data(), image.size()) < 0)
     throw std::runtime_error("HDF5 could not give the checkpoint's bytes");
-  io::write_atomically(path, image);
+  io::write_atomically(path, io::sealed(std::move(image)));
 }
 
 template <int dim>
@@ -177,7 +216,11 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
   Impl& s = *this;
   const auto reject = [&](const std::string& why) { throw io::IoError(path, why); };
   try {
-    const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
+    std::string image = io::read_sealed(path);
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
+    H5Pset_fapl_core(access, 1, false);
+    if (H5Pset_file_image(access, image.data(), image.size()) < 0) reject("HDF5 takes no image");
+    const Handle file(H5Fopen("checkpoint", H5F_ACC_RDONLY, access), H5Fclose,
                       "open it as a checkpoint");
     const std::vector<double> reals = read<double>(file, "reals");
     const std::vector<std::int64_t> wholes = read<std::int64_t>(file, "wholes");
@@ -189,9 +232,21 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
     std::size_t next_real = 0;
     std::size_t next_whole = 3;
     s.must_sort = wholes[1] != 0;
+    std::size_t scalars = 0, counts = 3;
     each_scalar(
-        s, [&](double& x) { x = reals.at(next_real++); },
-        [&](std::int64_t& x) { x = wholes.at(next_whole++); });
+        s, [&](double&) { ++scalars; }, [&](std::int64_t&) { ++counts; });
+    if (reals.size() != scalars || wholes.size() != counts)
+      reject("it has another number of scalars");
+    each_scalar(
+        s, [&](double& x) { x = reals[next_real++]; },
+        [&](std::int64_t& x) { x = wholes[next_whole++]; });
+    const bool moments = std::isfinite(s.time) && s.time >= 0.0 && std::isfinite(s.last_dt) &&
+                         s.last_dt >= 0.0 && std::isfinite(s.drift) && s.drift >= 0.0 &&
+                         s.steps >= 0;
+    const bool signals = std::isfinite(s.signals.speed) && s.signals.speed >= 0.0 &&
+                         std::isfinite(s.signals.signal) && s.signals.signal >= 0.0 &&
+                         std::isfinite(s.signals.viscous_rate) && s.signals.viscous_rate >= 0.0;
+    if (!moments || !signals) reject("its times or speeds are none");
 
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
       PointsOf<dim>& points = s.bodies[b];
@@ -216,6 +271,16 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
         restored[k].range.push_back({static_cast<std::size_t>(row[dim + 2 * b]),
                                      static_cast<std::size_t>(row[dim + 2 * b + 1])});
     }
+    std::set<std::array<int, dim>> places;
+    for (std::size_t k = 0; k < restored.size(); ++k) {
+      const std::int64_t* row = blocks.data() + k * width;
+      for (std::size_t a = 0; a < dim; ++a)
+        if (row[a] < 1 || row[a] > GridOf<dim>::block_of_cell(a, s.grid.cells()[a]))
+          reject("a block lies outside of the box");
+      if (!places.insert(restored[k].at).second) reject("two of its blocks are one");
+    }
+    for (std::size_t b = 0; b < s.bodies.size(); ++b)
+      require_sound(s.bodies[b], b, restored, s.grid);
     s.grid.restore(std::move(restored));
   } catch (const io::IoError&) {
     throw;

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "mpm/step/simulation_impl.hpp"
+#include "mpm/study/needs.hpp"
 
 namespace repose::mpm {
 namespace {
@@ -51,35 +52,89 @@ AtRest at_rest_under(const Material& material, double p) {
   }
 }
 
+/// What limits the explicit steps on the way.
+struct StepLimits {
+  double wave_s = HUGE_VAL;     ///< the fastest signal
+  double viscous_s = HUGE_VAL;  ///< the largest viscosity
+};
+
+/// By free fall through the height of the scene, and stiffness and viscosity under twice the weight
+/// of the highest body (what an impact from rest brings). density: of a body at the start.
+template <class Density>
+StepLimits limits_on_the_way(const Scene& scene, const Density& density) {
+  double top = 0.0;
+  double signal = 0.0, diffusivity = 0.0;
+  for (const Body& body : scene.bodies) top = std::max(top, body.origin[1] + body.size[1]);
+  for (const Body& body : scene.bodies) {
+    const auto material = make_material(body.law);
+    const double weight = density(*material, body) * scene.gravity * body.size[1];
+    const AtRest rest = at_rest_under(*material, 2.0 * weight);
+    signal = std::max(signal, rest.wave_speed + std::hypot(body.velocity[0], body.velocity[1]));
+    diffusivity = std::max(diffusivity, rest.diffusivity);
+  }
+  signal += std::sqrt(2.0 * scene.gravity * top);
+  StepLimits limits;
+  if (signal > 0.0) limits.wave_s = scene.courant * scene.h / signal;
+  if (diffusivity > 0.0 && scene.viscosity == Viscosity::explicit_force)
+    limits.viscous_s = stable_step(
+        {0.0, 0.0,
+         2.0 * static_cast<double>(scene.dimensions()) * diffusivity / (scene.h * scene.h)},
+        scene.courant, scene.h);
+  return limits;
+}
+
+/// More points than this are not laid out for an estimate: that would take seconds, and gigabytes.
+constexpr double most_points_measured = 1e6;
+/// Of a point in a step, on one core; the shipped scenes take 0.6 to 1.1e-7.
+constexpr double seconds_per_point_step = 1e-7;
+
+/// From the numbers of the scene alone.
+Estimate counted(const Scene& scene, const Needs& needs) {
+  Estimate e;
+  e.points = std::llround(needs.points);
+  e.live_cells = std::llround(needs.points / scene.points_per_cell);
+  e.memory_MB = needs.memory_MB;
+  const StepLimits limits =
+      limits_on_the_way(scene, [](const Material& material, const Body& body) {
+        return body.lithostatic ? material.density_at(0.0, body.initial.ocr.value_or(1.0))
+                                : material.initial(body.initial).density;
+      });
+  e.wave_dt_s = std::min(limits.wave_s, scene.end_time);
+  e.viscous_dt_s = limits.viscous_s;
+  e.first_dt_s = scene.dt ? *scene.dt : std::min(e.wave_dt_s, e.viscous_dt_s);
+  require_end_in_reach(scene, e.first_dt_s);
+  e.steps = scene.end_time / e.first_dt_s;
+  e.seconds = needs.points * e.steps * seconds_per_point_step;
+  e.warnings.push_back(
+      "steps and time are counted, not measured: so many points are not laid out for an estimate");
+  return e;
+}
+
 }  // namespace
 
+Estimate count_estimate(const Scene& scene) {
+  validate(scene);
+  require_memory(scene);
+  return counted(scene, needs_of(scene));
+}
+
 Estimate estimate(const Scene& scene, int threads) {
+  validate(scene);
+  const Needs needs = needs_of(scene);
+  require_memory(scene);
+  if (needs.points > most_points_measured || needs.box_cells > 100.0 * most_points_measured)
+    return counted(scene, needs);
   Estimate e;
   Simulation simulation(scene, threads);
   e.points = simulation.point_count();
   e.live_cells = simulation.live_cells();
   e.first_dt_s = simulation.next_dt();
   require_end_in_reach(scene, e.first_dt_s);
-
-  // Fastest signal on the way: free fall through the height of the scene, and the stiffness under
-  // twice the weight of the highest body (what an impact from rest brings).
-  double top = 0.0;
-  double signal = 0.0, diffusivity = 0.0;
-  for (const Body& body : scene.bodies) top = std::max(top, body.origin[1] + body.size[1]);
-  for (const Body& body : scene.bodies) {
-    const auto material = make_material(body.law);
-    const double weight = simulation.diagnostics().density_max * scene.gravity * body.size[1];
-    const AtRest rest = at_rest_under(*material, 2.0 * weight);
-    signal = std::max(signal, rest.wave_speed + std::hypot(body.velocity[0], body.velocity[1]));
-    diffusivity = std::max(diffusivity, rest.diffusivity);
-  }
-  signal += std::sqrt(2.0 * scene.gravity * top);
-  e.wave_dt_s = std::min(e.first_dt_s, scene.courant * scene.h / signal);
-  if (diffusivity > 0.0 && scene.viscosity == Viscosity::explicit_force)
-    e.viscous_dt_s = stable_step(
-        {0.0, 0.0,
-         2.0 * static_cast<double>(scene.dimensions()) * diffusivity / (scene.h * scene.h)},
-        scene.courant, scene.h);
+  const StepLimits limits = limits_on_the_way(scene, [&](const Material&, const Body&) {
+    return simulation.diagnostics().density_max;
+  });
+  e.wave_dt_s = std::min(e.first_dt_s, limits.wave_s);
+  e.viscous_dt_s = limits.viscous_s;
   const double typical = scene.dt ? *scene.dt : std::min(e.wave_dt_s, e.viscous_dt_s);
   e.steps = scene.end_time / typical;
 

@@ -182,6 +182,16 @@ std::vector<SweepRun> runs_of(const input::SceneFile& scene, const input::Sweep&
 }
 
 std::vector<SweepRun> runs_of(std::span<const SceneVariant> variants, const input::Sweep& sweep) {
+  double count = static_cast<double>(sweep.reference.size());
+  count += static_cast<double>(variants.size()) * static_cast<double>(sweep.transfers.size()) *
+           static_cast<double>(sweep.kernels.size()) *
+           static_cast<double>(sweep.points_per_cell.size()) *
+           static_cast<double>(sweep.cells.size()) *
+           static_cast<double>(sweep.courants.size() + sweep.dts.size());
+  if (count > most_chart_runs)
+    throw InputError("chart", fmt::format("the lists of [chart] make {:g} runs, and a chart has at "
+                                          "most {}",
+                                          count, most_chart_runs));
   std::vector<SweepRun> runs;
   for (const SceneVariant& variant : variants) {
     const std::size_t before = runs.size();
@@ -288,7 +298,12 @@ io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool 
   const std::string there = noted_status(request.folder / "summary.json");
   const std::string text = text_of(request.folder / "input.toml");
   const bool same = !text.empty() && after_version(text) == after_version(request.input);
-  if (!same || (there != "done" && there != "failed")) {
+  const bool ended = there == "done" || there == "failed";
+  std::string damage;
+  if (same && ended) damage = io::ResultFolder(request.folder).damage();
+  if (!damage.empty())
+    fmt::print(stderr, "warning: {}: {}, so it is run again\n", request.folder.string(), damage);
+  if (!same || !ended || !damage.empty()) {
     request.resume = resume && same && (there == "interrupted" || there == "running");
     const io::ExitCode code = run_scene(request);
     if (code == io::ExitCode::interrupted) return code;

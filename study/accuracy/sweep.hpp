@@ -16,6 +16,10 @@
 
 namespace repose::study {
 
+/// What a chart holds at most: 2000 runs are days, and a longer list is a slip of the pen.
+inline constexpr std::size_t most_chart_scenes = 500;
+inline constexpr int most_chart_runs = 2000;
+
 /// What is not given: every transfer that the scene admits (a note tells of the others), the
 /// scene's kernel and points per cell, cells of 8, 4 and 2 times the scene's h (three, so that
 /// there is a reference: mpm_errors.hpp), Courant numbers of 0.8, 0.4, 0.2, 0.1 unless there are

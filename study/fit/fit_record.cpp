@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "io/fingerprint.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "repose_version.hpp"
@@ -355,8 +356,23 @@ std::string journal_line(const StartResult& start) {
   j["from"] = list(start.from);
   if (start.global.z.size() > 0) j["global"] = json_of(start.global);
   j["optimum"] = json_of(start.optimum);
-  return j.dump() + "\n";
+  const std::string line = j.dump();
+  return fmt::format("{},\"checksum\":\"{}\"}}\n", line.substr(0, line.size() - 1),
+                     io::fingerprint_of(line));
 }
+
+namespace {
+
+/// Whether a line of a journal is the one that was written: its last member is the checksum of the
+/// line without it.
+bool has_own_checksum(const std::string& line, const Json& json) {
+  const std::string sum = json.value("checksum", "");
+  const std::string tail = fmt::format(",\"checksum\":\"{}\"}}", sum);
+  return line.ends_with(tail) &&
+         sum == io::fingerprint_of(line.substr(0, line.size() - tail.size()) + "}");
+}
+
+}  // namespace
 
 std::vector<StartResult> read_journal(const std::filesystem::path& path,
                                       const input::FitFile& file) {
@@ -372,6 +388,13 @@ std::vector<StartResult> read_journal(const std::filesystem::path& path,
     const auto json = Json::try_parse(line);
     if (!json || !whole) break;  // cut short by a kill
     const Json& j = *json;
+    if (!first && !has_own_checksum(line, j)) {
+      fmt::print(stderr,
+                 "warning: {}: a start is not as it was written; it and those behind it are "
+                 "made again\n",
+                 path.string());
+      break;
+    }
     if (first) {
       first = false;
       if (j.value("fingerprint", "") != file.fingerprint)

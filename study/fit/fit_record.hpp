@@ -48,7 +48,7 @@ std::string quoted_words(const input::FitFile& file, const FitResult& result,
                          std::size_t parameter);
 
 /// One line per finished start, and back. A journal begins with the fit's fingerprint; a line that
-/// was cut short is ignored.
+/// was cut short, or is not as it was written by its checksum, is ignored with those behind it.
 std::string journal_head(const input::FitFile& file);
 std::string journal_line(const calibration::StartResult& start);
 /// Errors: BadInput if the journal belongs to another fit, or lists other numbers for the same

@@ -10,9 +10,11 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "io/fingerprint.hpp"
 #include "io/interrupt.hpp"
 #include "io/number_text.hpp"
 #include "study/point/laboratory_record.hpp"
+#include "study/run/finished_result.hpp"
 
 namespace repose::study {
 namespace {
@@ -58,13 +60,13 @@ struct CurveColumns {
 Driven driven(const PointCase& one, std::size_t run, const CurveColumns& wanted) {
   Driven out;
   if (!one.test) {
-    out.figures = {"refused", one.refusal, 0, 0.0, Json::object()};
+    out.figures = {"refused", one.refusal, 0, 0.0, Json::object(), {}};
     return out;
   }
   const TestResult result = drive(*one.test);
   const std::size_t rows = result.curve.rows.size();
-  out.figures = {result.failed() ? "failed" : "done", result.reason, rows, result.wall_s,
-                 Json::object()};
+  out.figures = {
+      result.failed() ? "failed" : "done", result.reason, rows, result.wall_s, Json::object(), {}};
   const std::vector<std::vector<double>> columns = columns_of(*one.test, result, wanted.quantities);
   const std::vector<point::Path::Place> places = one.test->test.path.places();
   const std::size_t width = wanted.names().size();
@@ -95,15 +97,32 @@ Driven driven(const PointCase& one, std::size_t run, const CurveColumns& wanted)
 /// The log's complete lines, in the order of the runs; what is behind a broken one is not kept.
 void PointSweep::take_up(const io::ResultFolder& folder) {
   std::ifstream log(folder.file(log_name));
+  const std::string curves = text_of(folder.file("curves.csv"));
+  std::size_t at = std::min(curves.size(), curves.find('\n')) + 1;  // behind the header
+  /// The next rows of curves.csv if they are those that were written.
+  const auto are_there = [&](std::size_t rows, const std::string& checksum) {
+    const std::size_t begin = at;
+    for (; rows > 0 && at <= curves.size(); --rows) {
+      const std::size_t end = curves.find('\n', at);
+      if (end == std::string::npos) return false;
+      at = end + 1;
+    }
+    return begin <= curves.size() &&
+           checksum == io::fingerprint_of(std::string_view(curves).substr(begin, at - begin));
+  };
   for (std::string line; finished_.size() < cases_.size() && std::getline(log, line);) {
     const std::optional<Json> entry = Json::try_parse(line);
     if (!entry || !entry->contains("figures") ||
         entry->value("run", std::size_t{0}) != finished_.size() + 1)
       break;
-    finished_.push_back({entry->at("status").get<std::string>(),
-                         entry->at("reason").get<std::string>(),
-                         entry->at("rows").get<std::size_t>(), entry->at("wall_s").get<double>(),
-                         entry->at("figures")});
+    PointFigures figures{entry->value("status", ""),
+                         entry->value("reason", ""),
+                         entry->value("rows", std::size_t{0}),
+                         entry->value("wall_s", 0.0),
+                         entry->at("figures"),
+                         entry->value("checksum", "")};
+    if (!are_there(figures.rows, figures.checksum)) break;
+    finished_.push_back(std::move(figures));
   }
   kept_ = finished_.size();
 }
@@ -133,6 +152,7 @@ io::ExitCode PointSweep::run(const io::ResultFolder& folder, int threads, bool r
     });
     for (Driven& one : block) {
       curves.rows(one.rows);
+      one.figures.checksum = io::fingerprint_of(one.rows);
       finished_.push_back(std::move(one.figures));
       more << log_line(finished_.size() - 1);
     }
@@ -143,8 +163,9 @@ io::ExitCode PointSweep::run(const io::ResultFolder& folder, int threads, bool r
 
 std::string PointSweep::log_line(std::size_t run) const {
   const PointFigures& one = finished_[run];
-  return Json{{"run", run + 1},   {"status", one.status}, {"reason", one.reason},
-              {"rows", one.rows}, {"wall_s", one.wall_s}, {"figures", one.figures}}
+  return Json{{"run", run + 1},          {"status", one.status}, {"reason", one.reason},
+              {"rows", one.rows},        {"wall_s", one.wall_s}, {"figures", one.figures},
+              {"checksum", one.checksum}}
              .dump() +
          "\n";
 }

@@ -22,8 +22,9 @@ struct PointFigures {
   std::string status;  ///< done | failed | refused
   std::string reason;
   std::size_t rows = 0;
-  double wall_s = 0.0;  ///< of driving
-  io::Json figures;     ///< numbers and words under the names of summary.json
+  double wall_s = 0.0;     ///< of driving
+  io::Json figures;        ///< numbers and words under the names of summary.json
+  std::string checksum{};  ///< of its rows of curves.csv
 };
 
 class PointSweep {

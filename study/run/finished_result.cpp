@@ -4,6 +4,8 @@
 #include <fstream>
 #include <sstream>
 
+#include <fmt/core.h>
+
 #include "io/json.hpp"
 #include "study/run/run_record.hpp"
 
@@ -17,8 +19,14 @@ std::string text_of(const std::filesystem::path& file) {
 }
 
 bool is_finished(const io::ResultFolder& folder, std::string_view input) {
-  return text_of(folder.file("input.toml")) == input &&
-         noted_status(folder.file("summary.json")) == "done";
+  if (text_of(folder.file("input.toml")) != input ||
+      noted_status(folder.file("summary.json")) != "done")
+    return false;
+  const std::string damage = folder.damage();
+  if (damage.empty()) return true;
+  fmt::print(stderr, "warning: {}: {}, so this result is made again\n", folder.path().string(),
+             damage);
+  return false;
 }
 
 RunSummary read_summary(const std::filesystem::path& file) {

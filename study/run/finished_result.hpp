@@ -10,7 +10,8 @@
 namespace repose::study {
 
 /// Did the work on this very input text come to its end in the folder? The text itself is compared,
-/// not a hash of it, and it names the version of repose.
+/// not a hash of it, and it names the version of repose. A result whose files are not as they were
+/// written is none, and the standard error output says so.
 bool is_finished(const io::ResultFolder& folder, std::string_view input);
 
 /// A file as text; "" if it cannot be read.

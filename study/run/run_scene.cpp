@@ -10,6 +10,7 @@
 #include "input/resolved_scene.hpp"
 #include "io/interrupt.hpp"
 #include "io/json.hpp"
+#include "mpm/study/needs.hpp"
 #include "study/run/output_schedule.hpp"
 #include "study/run/run_record.hpp"
 
@@ -111,10 +112,14 @@ io::ExitCode Run::go() {
     voice_.warn(note);
     own_warnings_.push_back(note);
   }
-  if (request_.resume)
-    resume();
-  else
-    start();
+  try {
+    if (request_.resume)
+      resume();
+    else
+      start();
+  } catch (const mpm::NumericalFailure& failure) {
+    return stop_at_failure(failure.what());
+  }
   return advance();
 }
 
@@ -138,6 +143,8 @@ void Run::start() {
 
 void Run::resume() {
   folder_.remove_old_parts();
+  std::error_code ignored;
+  fs::remove(folder_.file("manifest.json"), ignored);  // of the failure before
   require_same_input(request_, folder_.file("input.toml"));
   record_.continue_from(folder_.file("summary.json"));
   load_checkpoint();
@@ -310,6 +317,7 @@ io::ExitCode Run::finish() {
   write_profile();
   const bool drawn = write_picture();
   write_summary("done", "");
+  folder_.seal();
   std::error_code ignored;
   fs::remove(folder_.checkpoint(), ignored);  // of what is made good
   fs::remove(folder_.previous_checkpoint(), ignored);
@@ -351,6 +359,7 @@ io::ExitCode Run::stop_at_failure(const std::string& reason) {
   if (!schedule_.frame_due(simulation_.time()) || frames_->count() == 0) write_frame();
   tell_warnings();
   write_summary("failed", reason);
+  folder_.seal();
   voice_.event({{"event", "end"},
                 {"status", "failed"},
                 {"exit", static_cast<int>(io::ExitCode::numerical_failure)},
@@ -374,16 +383,21 @@ io::ExitCode run_scene(const RunRequest& request) {
       if (fs::exists(folder.file("input.toml")))
         require_same_input(asked, folder.file("input.toml"));
       const Voice voice(asked);
-      if (noted_status(folder.file("summary.json")) == "done") {
+      const bool done = noted_status(folder.file("summary.json")) == "done";
+      const std::string damage = done ? folder.damage() : "";
+      if (!damage.empty()) voice.warn(fmt::format("{}: {}", asked.folder.string(), damage));
+      if (done && damage.empty()) {
         voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});
         voice.say(fmt::format("{} is complete: nothing to resume\n", asked.folder.string()));
         return io::ExitCode::done;
       }
-      voice.say(fmt::format("{}: there is no checkpoint yet, so the run begins anew\n",
-                            asked.folder.string()));
+      voice.say(fmt::format(
+          "{}: {}, so the run begins anew\n", asked.folder.string(),
+          done ? "its files are not as they were written" : "there is no checkpoint yet"));
       asked.resume = false;
     }
   }
+  mpm::require_memory(asked.file.scene);
   Run run(asked);
   return run.go();
 }

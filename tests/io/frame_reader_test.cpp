@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "io/frame_writer.hpp"
+#include "io/seal.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::io {
@@ -78,13 +79,17 @@ std::string reason(const std::function<void()>& read) {
 TEST_F(FrameReaderTest, WhatIsNoFrameIsRefused) {
   const fs::path frame = written(0.0), text = folder_ / "text.hdf";
   std::ofstream(text) << "no HDF5 at all";
+  EXPECT_EQ(
+      reason([&] { read_frame(text); }),
+      text.string() + ": is cut short, or of another version of repose: its checksum is missing");
+  std::ofstream(text) << sealed("no HDF5 at all");
   EXPECT_EQ(reason([&] { read_frame(text); }).find(text.string() + ": not a frame: HDF5 could not"),
             0u);
   EXPECT_NE(reason([&] { read_frame(folder_ / "none.hdf"); }).find("No such file"),
             std::string::npos);
   // a copy that was cut short
   fs::resize_file(frame, fs::file_size(frame) / 2);
-  EXPECT_NE(reason([&] { read_frame(frame); }).find("not a frame"), std::string::npos);
+  EXPECT_NE(reason([&] { read_frame(frame); }).find("is cut short"), std::string::npos);
 }
 
 TEST_F(FrameReaderTest, ASeriesStaysInItsFolder) {
