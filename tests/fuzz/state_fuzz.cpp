@@ -44,7 +44,6 @@ mpm::Scene small_scene() {
   scene.end_time = 1.0;
   scene.domain = {0.2, 0.2, 0.0};
   scene.h = 0.025;
-  scene.sleep_speed = 0.05;
   mpm::Body body;
   body.size = {0.1, 0.1, 0.0};
   body.law = {"modified_cam_clay",
