@@ -108,16 +108,20 @@ class AccuracyCommand {
     const study::Candidate& way = work_.choice().candidate;
     const study::Plan& plan = work_.choice().plan;
     const std::vector<std::string>& reasons = work_.choice().reasons;
+    // a prediction is the charted scenes', of which this one is none where there are reasons
+    const std::string expected =
+        reasons.empty()
+            ? fmt::format("predicted: {} to an error bar of {}, about {} of CPU", words_for(plan),
+                          percent(plan.error), seconds_text(plan.cost))
+            : fmt::format("from coarse to fine, until they show {}, for at most {} of CPU",
+                          percent(request_.target),
+                          seconds_text(request_.budget.value_or(study::default_budget_s)));
     say(fmt::format(
         "{}: {} to {}\n{}"
-        "  predicted: {} to an error bar of {}, about {} of CPU{}\n"
+        "  {}\n"
         "  with kernel {}, transfer {}, courant {:g} (in place of the scene's h, kernel "
         "and step)\n",
-        scene().name, quantity(), percent(request_.target), not_shown(reasons), words_for(plan),
-        percent(plan.error), seconds_text(plan.cost),
-        reasons.empty() ? ""
-                        : fmt::format(", at most {}", seconds_text(request_.budget.value_or(
-                                                          study::default_budget_s))),
+        scene().name, quantity(), percent(request_.target), not_shown(reasons), expected,
         mpm::name_of(way.kernel), mpm::name_of(way.transfer), way.courant));
     for (const std::string& warning : warnings_)
       if (!request_.quiet) fmt::print(stderr, "warning: {}\n", warning);
@@ -243,12 +247,15 @@ class AccuracyCommand {
     say(
         fmt::format("  {}; {}\n{}"
                     "  from all runs; cells of {:.4g} mm alone are about {} off\n"
-                    "  {} of CPU (predicted {})\n"
+                    "  {} of CPU{}\n"
                     "  {}: estimate.csv, accuracy.svg; `repose run {}` is the finest run\n",
                     value, promise_text(answer),
                     work_.choice().reasons.empty() ? not_shown(answer.reasons) : "",
                     1e3 * work_.convergence().levels().back().h, percent(alone),
-                    seconds_text(work_.cpu_s()), seconds_text(work_.choice().plan.cost),
+                    seconds_text(work_.cpu_s()),
+                    work_.choice().reasons.empty()
+                        ? fmt::format(" (predicted {})", seconds_text(work_.choice().plan.cost))
+                        : "",
                     folder.path().string(), folder.file("advised.toml").string()));
   }
 
