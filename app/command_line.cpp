@@ -1,6 +1,7 @@
 #include "app/command_line.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <new>
 #include <span>
 
@@ -29,14 +30,22 @@ constexpr const char* examples =
     "interrupted.\n"
     "`repose VERB --help` tells about one verb.";
 
+/// To the standard error output if that takes it: where it does not (a log on a full disk), the
+/// exit code still has to say what happened. (fmt::print throws.)
+void say_error(const std::string& line) noexcept {
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
 /// All complaints go here, one per line, and with --json to the standard output as well.
 io::ExitCode complain(io::ExitCode code, const std::vector<std::string>& messages, bool json) {
-  for (const std::string& message : messages) fmt::print(stderr, "{}\n", message);
-  if (json)
-    fmt::print(
-        "{}\n",
+  for (const std::string& message : messages) say_error(message + "\n");
+  if (json) {
+    const std::string line =
         io::Json{{"event", "error"}, {"messages", messages}, {"exit", static_cast<int>(code)}}
-            .dump());
+            .dump() +
+        "\n";
+    std::fwrite(line.data(), 1, line.size(), stdout);
+  }
   return code;
 }
 
@@ -77,8 +86,8 @@ std::string suggestion(std::string_view word, const CLI::App& root, const CLI::A
 }
 
 io::ExitCode misuse(const std::string& message, const CLI::App* verb) {
-  fmt::print(stderr, "repose: {}\n`repose {}--help` shows how it goes.\n", message,
-             verb == nullptr ? "" : verb->get_name() + " ");
+  say_error(fmt::format("repose: {}\n`repose {}--help` shows how it goes.\n", message,
+                        verb == nullptr ? "" : verb->get_name() + " "));
   return io::ExitCode::bad_input;
 }
 
@@ -232,7 +241,7 @@ int run_command_line(int argc, const char* const* argv) {
   try {
     return static_cast<int>(parse_and_run({argv, static_cast<std::size_t>(argc)}));
   } catch (const std::exception& error) {
-    fmt::print(stderr, "repose {}: internal error: {}\n", version_string, error.what());
+    say_error(fmt::format("repose {}: internal error: {}\n", version_string, error.what()));
     return static_cast<int>(io::ExitCode::internal_error);
   }
 }

@@ -102,10 +102,10 @@ namespace {
 
 /// "line 2, column 7": of a byte, counted from 1.
 std::string place_of(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, byte == 0 ? 0 : std::min(byte - 1, text.size()));
-  const auto lines = std::count(before.begin(), before.end(), '\n');
-  const std::size_t start = before.rfind('\n');
-  const std::size_t column = before.size() - (start == before.npos ? 0 : start + 1);
+  const std::string_view above = text.substr(0, byte == 0 ? 0 : std::min(byte - 1, text.size()));
+  const auto lines = std::count(above.begin(), above.end(), '\n');
+  const std::size_t start = above.rfind('\n');
+  const std::size_t column = above.size() - (start == above.npos ? 0 : start + 1);
   return "line " + std::to_string(lines + 1) + ", column " + std::to_string(column + 1);
 }
 

@@ -209,8 +209,12 @@ void ResultFolder::seal() const {
     if (!entry.is_null()) files[name] = entry;
   };
   add("input.toml", true);
+  // what a result that is done has no longer
+  constexpr std::array<std::string_view, 4> passing{manifest_name, "checkpoint.h5",
+                                                    "checkpoint_previous.h5", "finished.jsonl"};
   for (const std::string_view name : outputs)
-    if (name != manifest_name) add(std::string(name), true);
+    if (std::find(passing.begin(), passing.end(), name) == passing.end())
+      add(std::string(name), true);
   std::error_code error;
   std::vector<std::string> frame_files;
   for (fs::directory_iterator it(frames(), error), end; !error && it != end; it.increment(error))
@@ -218,7 +222,12 @@ void ResultFolder::seal() const {
       frame_files.push_back("frames/" + name);
   std::sort(frame_files.begin(), frame_files.end());
   for (const std::string& name : frame_files) add(name, false);
-  write_file(manifest_name, Json{{"files", files}}.dump(1) + "\n");
+  std::vector<std::string> runs;  // results of their own
+  for (fs::directory_iterator it(file("runs"), error), end; !error && it != end;
+       it.increment(error))
+    if (fs::exists(it->path() / manifest_name)) runs.push_back(it->path().filename().string());
+  std::sort(runs.begin(), runs.end());
+  write_file(manifest_name, Json{{"files", files}, {"runs", runs}}.dump(1) + "\n");
 }
 
 std::string ResultFolder::damage() const {
@@ -229,7 +238,14 @@ std::string ResultFolder::damage() const {
     return in.is_open() ? "manifest.json is damaged" : "there is no manifest.json";
   std::vector<std::string> names;
   for (const auto& [name, entry] : files->items()) names.push_back(name);
-  return damage(names);
+  if (std::string own = damage(names); !own.empty()) return own;
+  for (const std::string& run : manifest->value("runs", std::vector<std::string>{})) {
+    const fs::path there = file("runs") / run;
+    const std::string why =
+        fs::is_directory(there) ? ResultFolder(there).damage() : std::string("it is missing");
+    if (!why.empty()) return fmt::format("runs/{}: {}", run, why);
+  }
+  return "";
 }
 
 std::string ResultFolder::damage(std::span<const std::string> names) const {
@@ -350,14 +366,14 @@ std::string RowWriter::text_of(std::span<const double> values, std::size_t colum
 }
 
 void RowWriter::append(std::string_view line) {
-  const off_t before = ::lseek(fd_, 0, SEEK_END);
+  const off_t end_before = ::lseek(fd_, 0, SEEK_END);
   while (!line.empty()) {
     const ssize_t written = ::write(fd_, line.data(), line.size());
     if (written < 0) {
       if (errno == EINTR) continue;
       const int error = errno;
       // Best effort: a device has nothing to take back.
-      if (before < 0 || ::ftruncate(fd_, before) != 0) errno = error;
+      if (end_before < 0 || ::ftruncate(fd_, end_before) != 0) errno = error;
       throw IoError(path_, "cannot write", error);
     }
     line.remove_prefix(static_cast<std::size_t>(written));

@@ -37,7 +37,8 @@ class ResultFolder {
   void remove_old_parts() const;
 
   /// Declares the result complete: writes manifest.json with the length and the checksum of every
-  /// file of it (of frames, which have their own, the length). Errors: IoError.
+  /// file of it (of frames, which have their own, the length), and names the results in runs/,
+  /// which have one of their own. Errors: IoError.
   void seal() const;
 
   /// What is not as seal() found it: "series.csv is not as it was written"; "there is no

@@ -222,7 +222,14 @@ class Maps {
     return list;
   }
 
-  Json write_summary(const char* status) const {
+  Json write_summary(const char* status) {
+    // in the order that they were asked for, whichever was made again
+    Json ordered = Json::object();
+    for (const input::StabilityPart part : input_.parts) {
+      const std::string name(input::stability_names[static_cast<std::size_t>(part)]);
+      if (parts_.contains(name)) ordered[name] = parts_[name];
+    }
+    parts_ = std::move(ordered);
     double cpu_s = 0.0, wall_s = 0.0;
     for (const auto& [name, figures] : parts_.items()) {
       cpu_s += figures["cpu_s"].get<double>();

@@ -307,6 +307,8 @@ io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool 
     request.resume = resume && same && (there == "interrupted" || there == "running");
     const io::ExitCode code = run_scene(request);
     if (code == io::ExitCode::interrupted) return code;
+  } else {
+    const io::FolderClaim claim{io::ResultFolder(request.folder)};  // removes what a kill has left
   }
   read_result(run, request.folder);
   return io::ExitCode::done;

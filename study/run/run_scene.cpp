@@ -29,7 +29,7 @@ class Voice {
     if (json_)
       event({{"event", "warning"}, {"message", text}});
     else if (!quiet_)
-      fmt::print(stderr, "warning: {}\n", text);
+      std::fprintf(stderr, "warning: %s\n", text.c_str());  // never throws: no run is lost for it
   }
   void say(const std::string& text) const {
     if (!json_ && !quiet_) fmt::print("{}", text);

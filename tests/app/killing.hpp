@@ -18,12 +18,15 @@
 
 namespace repose {
 
-/// repose with these arguments, begun in a folder; what it prints is lost.
-inline pid_t start(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
+/// repose with these arguments, begun in a folder; what it prints is lost, and if `silent` what it
+/// complains of too.
+inline pid_t start(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+                   bool silent = false) {
   const pid_t child = ::fork();
   if (child != 0) return child;
   if (::chdir(folder.c_str()) != 0) ::_exit(100);
   if (std::freopen("/dev/null", "w", stdout) == nullptr) ::_exit(102);
+  if (silent && std::freopen("/dev/null", "w", stderr) == nullptr) ::_exit(102);
   std::vector<char*> argv{const_cast<char*>("repose")};
   for (const std::string& one : arguments) argv.push_back(const_cast<char*>(one.c_str()));
   argv.push_back(nullptr);

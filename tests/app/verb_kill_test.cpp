@@ -100,17 +100,19 @@ const std::vector<VerbCase>& verbs() {
       {"chart_mpm",
        {"chart", "mpm", "scene.toml", "--transfers", "apic,flip", "--cells", "0.05,0.025",
         "--courants", "0.8,0.4", "--threads", "1"}},
-      {"chart_fit", {"chart", "fit", "fit.toml", "--evaluations", "100"}},
-      {"stability", {"stability", "--parts", "mu_i,step", "--quick"}}};
+      {"chart_fit", {"chart", "fit", "fit.toml", "--evaluations", "40"}},
+      {"stability", {"stability", "--parts", "clay,mpm", "--quick"}}};
   return list;
 }
 
-bool is_of_the_clock(std::string_view name) {
+/// Names of figures that a clock decides, or what was left to do when a kill had come: of any file,
+/// and of a chart of optimisers, whose time_s is one of clocks and not of a simulation.
+bool is_of_the_clock(std::string_view name, bool of_optimisers) {
   for (const std::string_view word :
        {"wall_s", "cpu_s", "seconds", "peak_memory_MB", "per_s", "sessions", "runs_kept",
-        "driving_s", "checksum", "trace", "recalled", "simulated", "threads"})
+        "driving_s", "checksum", "trace", "counts", "time_to_", "threads"})
     if (name.find(word) != name.npos) return true;
-  return false;
+  return of_optimisers && name == "time_s";
 }
 
 /// A JSON value without what a clock or a kill decides.
@@ -119,7 +121,7 @@ void settle(io::Json& json) {
     std::vector<std::string> names;
     for (const auto& [name, value] : json.items()) names.push_back(name);
     for (const std::string& name : names)
-      if (is_of_the_clock(name))
+      if (is_of_the_clock(name, false))
         json.erase(name);
       else
         settle(json[name]);
@@ -130,6 +132,7 @@ void settle(io::Json& json) {
 
 /// A table without the columns that a clock decides.
 std::string without_clock(const std::string& csv) {
+  const bool of_optimisers = csv.starts_with("algorithm,");
   std::istringstream lines(csv);
   std::string text;
   std::vector<bool> kept;
@@ -137,7 +140,7 @@ std::string without_clock(const std::string& csv) {
     std::istringstream cells(line);
     std::size_t column = 0;
     for (std::string cell; std::getline(cells, cell, ','); ++column) {
-      if (text.find('\n') == text.npos) kept.push_back(!is_of_the_clock(cell));
+      if (text.find('\n') == text.npos) kept.push_back(!is_of_the_clock(cell, of_optimisers));
       if (column < kept.size() && kept[column]) text += cell + ",";
     }
     text += "\n";
@@ -193,7 +196,7 @@ class VerbTest : public testing::TestWithParam<VerbCase> {
     put("fit.toml", fit);
     put("t.csv", "eps_a,q_Pa\n0.005,6.5e3\n0.01,8e3\n0.02,9.6e3\n0.03,10.3e3\n0.05,10.9e3\n");
     std::string runs = "initial.ocr\n";
-    for (int k = 0; k < 400; ++k) runs += std::to_string(1.0 + 0.01 * k) + "\n";
+    for (int k = 0; k < 120; ++k) runs += std::to_string(1.0 + 0.01 * k) + "\n";
     put("ocr.csv", runs);
   }
   void put(const char* name, const std::string& text) const {
@@ -207,7 +210,7 @@ class VerbTest : public testing::TestWithParam<VerbCase> {
     return all;
   }
   int run(const std::string& out, bool resume = false) const {
-    return ended(start(folder(), command(out, resume)));
+    return ended(start(folder(), command(out, resume), true));
   }
 
  private:
@@ -220,14 +223,14 @@ TEST_P(VerbTest, KilledAtAnyMomentAndResumedGivesTheSameFigures) {
   const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begun;
   const auto straight = figures_of(folder() / "straight");
   EXPECT_TRUE(straight.contains("summary.json"));
-  const int kills = kills_wanted(3);
+  const int kills = kills_wanted(2);
   std::mt19937 random(20261129);
   std::uniform_real_distribution<double> part(0.0, 0.7);
   int killed = 0, interrupted = 0, runs = 0;
   while (killed < kills) {
     const std::string out = "run" + std::to_string(runs++);
     for (int attempt = 0; attempt < 200; ++attempt) {
-      const pid_t child = start(folder(), command(out, fs::exists(folder() / out)));
+      const pid_t child = start(folder(), command(out, fs::exists(folder() / out)), true);
       std::this_thread::sleep_for(std::chrono::duration<double>(part(random) * whole.count()));
       const bool interrupts = random() % 4 == 0;
       ::kill(child, interrupts ? SIGINT : SIGKILL);
@@ -276,23 +279,30 @@ TEST_P(VerbTest, ADamagedResultIsNotTakenForOne) {
 }
 
 TEST_P(VerbTest, TwoIntoOneFolderAreRefused) {
-  const pid_t first = start(folder(), command("shared", false));
-  const fs::path lock = folder() / "shared" / ".repose-lock";
-  for (int k = 0; k < 5000 && !fs::exists(lock); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  ::kill(first, SIGSTOP);
-  const bool held = fs::exists(lock);
-  if (held) {
-    EXPECT_EQ(run("shared"), 4);
-    EXPECT_EQ(run("shared", true), 4);
+  // what is over before it can be stopped is begun again
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    const std::string out = "shared" + std::to_string(attempt);
+    const fs::path lock = folder() / out / ".repose-lock";
+    const pid_t first = start(folder(), command(out, false));
+    for (int k = 0; k < 20000 && content_of(lock).empty(); ++k)
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    ::kill(first, SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const bool held = fs::exists(lock);
+    if (held) {
+      EXPECT_EQ(run(out), 4);
+      EXPECT_EQ(run(out, true), 4);
+    }
+    ::kill(first, SIGCONT);
+    EXPECT_EQ(ended(first), 0);
+    if (held) return;
   }
-  ::kill(first, SIGCONT);
-  EXPECT_EQ(ended(first), 0);
-  EXPECT_TRUE(held) << "it was over before anybody could look";
+  ADD_FAILURE() << "it was over before anybody could look";
 }
 
 /// No file may grow beyond some bytes, as on a disk that is full: an error that names the file and
-/// exit code 4; with room again, --resume comes to the same figures.
+/// exit code 4, though nobody can read it where the log is on the same disk; with room again,
+/// --resume comes to the same figures.
 TEST_P(VerbTest, AFullDiskIsSaidAndLosesNothing) {
   ASSERT_EQ(run("straight"), 0);
   const auto straight = figures_of(folder() / "straight");
@@ -303,6 +313,7 @@ TEST_P(VerbTest, AFullDiskIsSaidAndLosesNothing) {
       const rlimit limit{room, room};
       ::setrlimit(RLIMIT_FSIZE, &limit);
       ::signal(SIGXFSZ, SIG_IGN);  // write() then fails with EFBIG
+      if (room == 100 && std::freopen("/dev/full", "w", stderr) == nullptr) ::_exit(1);
       const pid_t inner = start(folder(), command(out, false));
       ::_exit(ended(inner) & 0xff);
     }
@@ -318,7 +329,9 @@ TEST_P(VerbTest, AFolderThatTakesNothingIsSaid) {
   EXPECT_EQ(run("/proc/repose"), 4);
   fs::create_directory(folder() / "closed");
   fs::permissions(folder() / "closed", fs::perms::owner_read | fs::perms::owner_exec);
-  if (::geteuid() != 0) EXPECT_EQ(run("closed/out"), 4);
+  if (::geteuid() != 0) {
+    EXPECT_EQ(run("closed/out"), 4);
+  }
   fs::permissions(folder() / "closed", fs::perms::owner_all);
   std::ofstream(folder() / "file") << "not a folder";
   EXPECT_EQ(run("file"), 4);
@@ -326,7 +339,7 @@ TEST_P(VerbTest, AFolderThatTakesNothingIsSaid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, VerbTest, testing::ValuesIn(verbs()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace repose

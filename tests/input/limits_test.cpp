@@ -157,7 +157,7 @@ TEST(Limits, ASceneThatTheMachineCannotHoldIsRefused) {
   const mpm::Scene given = scene_with({});
   EXPECT_NO_THROW(mpm::require_memory(given, mpm::needs_of(given).memory_MB));
   try {
-    mpm::require_memory(given, 0.5);
+    mpm::require_memory(given, 0.01);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.key(), "grid.h");
