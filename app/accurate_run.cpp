@@ -244,19 +244,18 @@ class AccuracyCommand {
             : fmt::format("{} = {:.4g} ± {:.2g} {} ({})", quantity(), estimate.value[0],
                           estimate.error * std::abs(estimate.value[0]),
                           study::unit_of(request_.quantity), bar_text(estimate.error));
-    say(
-        fmt::format("  {}; {}\n{}"
-                    "  from all runs; cells of {:.4g} mm alone are about {} off\n"
-                    "  {} of CPU{}\n"
-                    "  {}: estimate.csv, accuracy.svg; `repose run {}` is the finest run\n",
-                    value, promise_text(answer),
-                    work_.choice().reasons.empty() ? not_shown(answer.reasons) : "",
-                    1e3 * work_.convergence().levels().back().h, percent(alone),
-                    seconds_text(work_.cpu_s()),
-                    work_.choice().reasons.empty()
-                        ? fmt::format(" (predicted {})", seconds_text(work_.choice().plan.cost))
-                        : "",
-                    folder.path().string(), folder.file("advised.toml").string()));
+    say(fmt::format(
+        "  {}; {}\n{}"
+        "  from all runs; cells of {:.4g} mm alone are about {} off\n"
+        "  {} of CPU{}\n"
+        "  {}: estimate.csv, accuracy.svg; `repose run {}` is the finest run\n",
+        value, promise_text(answer),
+        work_.choice().reasons.empty() ? not_shown(answer.reasons) : "",
+        1e3 * work_.convergence().levels().back().h, percent(alone), seconds_text(work_.cpu_s()),
+        work_.choice().reasons.empty()
+            ? fmt::format(" (predicted {})", seconds_text(work_.choice().plan.cost))
+            : "",
+        folder.path().string(), folder.file("advised.toml").string()));
   }
 
   io::ExitCode stop_at_interrupt(const io::ResultFolder& folder) const {

@@ -300,7 +300,7 @@ point::Path read_path(TomlReader table, Kind& kind, const PathReading& about) {
       legs.push_back(leg_of(at, given, how));
     } else {
       // before they are made: each takes some kilobytes
-      const double asked = given.sweeps   ? given.rates
+      const double asked = given.sweeps   ? static_cast<double>(given.rates)
                            : given.cycles ? 2.0 * static_cast<double>(*given.cycles)
                                           : 1.0;
       if (static_cast<double>(stages.size()) + asked > most_legs) {

@@ -243,10 +243,10 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
     const bool moments = std::isfinite(s.time) && s.time >= 0.0 && std::isfinite(s.last_dt) &&
                          s.last_dt >= 0.0 && std::isfinite(s.drift) && s.drift >= 0.0 &&
                          s.steps >= 0;
-    const bool signals = std::isfinite(s.signals.speed) && s.signals.speed >= 0.0 &&
-                         std::isfinite(s.signals.signal) && s.signals.signal >= 0.0 &&
-                         std::isfinite(s.signals.viscous_rate) && s.signals.viscous_rate >= 0.0;
-    if (!moments || !signals) reject("its times or speeds are none");
+    const bool speeds = std::isfinite(s.signals.speed) && s.signals.speed >= 0.0 &&
+                        std::isfinite(s.signals.signal) && s.signals.signal >= 0.0 &&
+                        std::isfinite(s.signals.viscous_rate) && s.signals.viscous_rate >= 0.0;
+    if (!moments || !speeds) reject("its times or speeds are none");
 
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
       PointsOf<dim>& points = s.bodies[b];

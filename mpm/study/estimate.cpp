@@ -130,9 +130,8 @@ Estimate estimate(const Scene& scene, int threads) {
   e.live_cells = simulation.live_cells();
   e.first_dt_s = simulation.next_dt();
   require_end_in_reach(scene, e.first_dt_s);
-  const StepLimits limits = limits_on_the_way(scene, [&](const Material&, const Body&) {
-    return simulation.diagnostics().density_max;
-  });
+  const StepLimits limits = limits_on_the_way(
+      scene, [&](const Material&, const Body&) { return simulation.diagnostics().density_max; });
   e.wave_dt_s = std::min(e.first_dt_s, limits.wave_s);
   e.viscous_dt_s = limits.viscous_s;
   const double typical = scene.dt ? *scene.dt : std::min(e.wave_dt_s, e.viscous_dt_s);
