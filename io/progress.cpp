@@ -10,6 +10,10 @@
 
 namespace repose::io {
 
+void warn_of_damage(const std::string& file, const std::string& damage, const char* consequence) {
+  fmt::print(stderr, "warning: {}: {}, {}\n", file, damage, consequence);
+}
+
 Progress::Mode Progress::mode(bool quiet, bool json) {
   if (json) return Mode::json;
   return !quiet && ::isatty(STDERR_FILENO) == 1 ? Mode::terminal : Mode::none;

@@ -6,6 +6,10 @@
 
 namespace repose::io {
 
+/// Says on standard error, whatever else is quiet, that a file is not as it was written and what is
+/// done about it: "warning: FILE: damage, so it is run again".
+void warn_of_damage(const std::string& file, const std::string& damage, const char* consequence);
+
 /// Tells how far a run is: one line that is redrawn on a terminal, JSON lines, or nothing.
 class Progress {
  public:

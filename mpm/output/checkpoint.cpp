@@ -135,10 +135,12 @@ class Quiet {
 /// What the steps rely on without asking, of the points of a body: finite numbers, mass, and every
 /// slot in the range of one block, not farther from it than the tile of the block reaches. Throws
 /// std::runtime_error with what is wrong: a checkpoint may be whole and yet be another scene's, or
-/// that of a program with a fault.
+/// that of a program with a fault. Points that wait to be sorted (`moved`) may be anywhere that
+/// their walls let them go.
 template <int dim>
 void require_sound(const PointsOf<dim>& points, std::size_t body,
-                   const std::vector<PointBlockOf<dim>>& blocks, const GridOf<dim>& grid) {
+                   const std::vector<PointBlockOf<dim>>& blocks, const GridOf<dim>& grid,
+                   const Walls& walls, bool moved) {
   using F = Layout<dim>;
   const auto fail = [](const char* why) { throw std::runtime_error(why); };
   std::vector<char> taken(points.slots(), 0);
@@ -157,7 +159,13 @@ void require_sound(const PointsOf<dim>& points, std::size_t body,
       for (std::size_t a = 0; a < dim; ++a) {
         const double cell = std::floor(points[F::x + a][s] / grid.h());
         const int first = GridOf<dim>::first(a, pb.at[a]);
-        if (!(cell >= first - 1 && cell <= first + Shape<dim>::cells[a]))
+        const auto closed = [](const Wall& wall) {
+          return wall.kind != Wall::Kind::open && wall.kind != Wall::Kind::periodic;
+        };
+        const bool inside = (cell >= 0.0 || !closed(walls.low(a))) &&
+                            (cell <= grid.cells()[a] || !closed(walls.high(a)));
+        const bool at_home = cell >= first - 1 && cell <= first + Shape<dim>::cells[a];
+        if (!(moved && s < range.begin + range.count ? inside : at_home))
           fail("a point lies outside of its block");
       }
     }
@@ -280,7 +288,7 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
       if (!places.insert(restored[k].at).second) reject("two of its blocks are one");
     }
     for (std::size_t b = 0; b < s.bodies.size(); ++b)
-      require_sound(s.bodies[b], b, restored, s.grid);
+      require_sound(s.bodies[b], b, restored, s.grid, s.walls, s.must_sort);
     s.grid.restore(std::move(restored));
   } catch (const io::IoError&) {
     throw;

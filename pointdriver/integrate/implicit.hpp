@@ -302,8 +302,8 @@ class Implicit {
       double dt = i % 3 == 2 ? 0.5 * (low + high) : high - g_high * (high - low) / (g_high - g_low);
       if (!(dt > low && dt < high)) dt = 0.5 * (low + high);
       if (!step(run, y, t, T(dt))) {
-        guess_ = first_guess_;  // as drive() does where a step is halved
-        if (!step(run, y, t, T(dt))) break;
+        guess_ = first_guess_;                  // as drive() does where a step is halved
+        if (!step(run, y, t, T(dt))) continue;  // the next bisection ends it elsewhere
       }
       const double g = value(run.event_value(e, next_, t + T(dt)));
       if (high > low) slope = (g_high - g_low) / (high - low);

@@ -10,6 +10,7 @@
 
 #include "input/resolved_scene.hpp"
 #include "io/json.hpp"
+#include "io/progress.hpp"
 #include "io/result_folder.hpp"
 #include "repose_version.hpp"
 #include "study/run/finished_result.hpp"
@@ -301,8 +302,7 @@ io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool 
   const bool ended = there == "done" || there == "failed";
   std::string damage;
   if (same && ended) damage = io::ResultFolder(request.folder).damage();
-  if (!damage.empty())
-    fmt::print(stderr, "warning: {}: {}, so it is run again\n", request.folder.string(), damage);
+  if (!damage.empty()) io::warn_of_damage(request.folder.string(), damage, "so it is run again");
   if (!same || !ended || !damage.empty()) {
     request.resume = resume && same && (there == "interrupted" || there == "running");
     const io::ExitCode code = run_scene(request);

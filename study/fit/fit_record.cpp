@@ -8,6 +8,7 @@
 
 #include "io/fingerprint.hpp"
 #include "io/json.hpp"
+#include "io/progress.hpp"
 #include "io/result_folder.hpp"
 #include "repose_version.hpp"
 
@@ -389,10 +390,8 @@ std::vector<StartResult> read_journal(const std::filesystem::path& path,
     if (!json || !whole) break;  // cut short by a kill
     const Json& j = *json;
     if (!first && !has_own_checksum(line, j)) {
-      fmt::print(stderr,
-                 "warning: {}: a start is not as it was written; it and those behind it are "
-                 "made again\n",
-                 path.string());
+      io::warn_of_damage(path.string(), "a start is not as it was written",
+                         "so it and those behind it are made again");
       break;
     }
     if (first) {

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "io/json.hpp"
+#include "io/progress.hpp"
 #include "study/run/run_record.hpp"
 
 namespace repose::study {
@@ -24,8 +25,7 @@ bool is_finished(const io::ResultFolder& folder, std::string_view input) {
     return false;
   const std::string damage = folder.damage();
   if (damage.empty()) return true;
-  fmt::print(stderr, "warning: {}: {}, so this result is made again\n", folder.path().string(),
-             damage);
+  io::warn_of_damage(folder.path().string(), damage, "so this result is made again");
   return false;
 }
 

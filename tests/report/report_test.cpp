@@ -260,7 +260,7 @@ TEST_F(ReadResultTest, ReadsFrames) {
   const fs::path frame = io::FrameWriter(base_ / "a/frames", "sand").write(view);
   EXPECT_EQ(read_result(base_ / "a")["frames"]["counts"], Json::parse("[2]"));
   std::ofstream(frame) << "broken";
-  EXPECT_EQ(refusal<io::IoError>(base_ / "a").find(frame.string() + ": not a frame"), 0u);
+  EXPECT_EQ(refusal<io::IoError>(base_ / "a").find(frame.string() + ": is cut short"), 0u);
   fs::remove(frame);
   EXPECT_EQ(refusal<io::IoError>(base_ / "a").find(frame.string() + ": cannot read"), 0u);
 }
