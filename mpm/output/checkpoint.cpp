@@ -165,7 +165,8 @@ void require_sound(const PointsOf<dim>& points, std::size_t body,
         const bool inside = (cell >= 0.0 || !closed(walls.low(a))) &&
                             (cell <= grid.cells()[a] || !closed(walls.high(a)));
         const bool at_home = cell >= first - 1 && cell <= first + Shape<dim>::cells[a];
-        if (!(moved && s < range.begin + range.count ? inside : at_home))
+        const bool padding = s >= range.begin + range.count;
+        if (!(at_home || (moved && (padding || inside))))
           fail("a point lies outside of its block");
       }
     }

@@ -292,13 +292,14 @@ class Implicit {
     return -1;
   }
 
-  /// Shortens the step until it ends at event e: bisection and secant in turn, at most 60 updates.
+  /// Shortens the step until it ends at event e: bisection and secant in turn, at most 180
+  /// updates (60 bisections: to 2^−60, where secants come from one side alone or do not converge).
   LegEnd<T> end_at(Run& run, Y& y, const T& t, const T& whole, int e) {
     double low = 0.0, high = value(whole);
     double g_low = value(run.event_value(e, y, t));
     double g_high = value(run.event_value(e, next_, t + whole));
     double slope = 0.0;
-    for (int i = 0; i < 60 && high - low > 1e-13 * value(whole); ++i) {
+    for (int i = 0; i < 180 && high - low > 1e-13 * value(whole); ++i) {
       double dt = i % 3 == 2 ? 0.5 * (low + high) : high - g_high * (high - low) / (g_high - g_low);
       if (!(dt > low && dt < high)) dt = 0.5 * (low + high);
       if (!step(run, y, t, T(dt))) {

@@ -221,7 +221,9 @@ TEST_F(CommandTest, ARunLeavesACompleteResult) {
             "time_s,step,dt_s,front_m,front_max_m,height_m,kinetic_J_per_m,potential_J_per_m,"
             "elastic_J_per_m,dissipated_J_per_m,mass_kg_per_m,momentum_x,momentum_y,density_min,"
             "density_max,points_separated,transfer_loss_J_per_m,wall_loss_J_per_m,"
-            "energy_residual_J_per_m,outflow_kg_per_m,angular_momentum,front_99_m");
+            "energy_residual_J_per_m,outflow_kg_per_m,angular_momentum,front_99_m,"
+            "plastic_J_per_m,viscous_J_per_m,hypoelastic_J_per_m,separation_J_per_m,"
+            "averaging_loss_J_per_m,density_floor_J_per_m,work_residual_J_per_m");
   EXPECT_EQ(series[1].substr(0, 4), "0,0,");
   EXPECT_EQ(series[101].substr(0, 9), "0.1,5000,");
   EXPECT_EQ(lines_of(content_of(folder / "profile.csv")).at(0), "x_m,depth_m");
@@ -392,7 +394,7 @@ TEST_F(CommandTest, AFullDiskIsToldAndLeavesNothingHalfWritten) {
   const std::string series = content_of(base_ / "full" / "series.csv");
   EXPECT_EQ(series.back(), '\n');
   for (const std::string& row : lines_of(series))
-    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 21) << row;
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 28) << row;
   EXPECT_FALSE(fs::exists(base_ / "full" / "summary.json")) << "nothing says that it is complete";
   for (const auto& entry : fs::directory_iterator(base_ / "full"))
     EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
