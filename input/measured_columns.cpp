@@ -101,6 +101,9 @@ MeasuredColumns::MeasuredColumns(TomlReader& reader, std::string_view key, const
     io::RawTable table = io::load_table(file, format);
     rows_ = io::select_rows(table, filter_);
     table_ = std::move(table);
+  } catch (const io::IoError& error) {
+    throw io::IoError(file, fmt::format("{}, which {} names", error.reason(),
+                                        to_string(reader.file().origin(reader.path_of(key)))));
   } catch (const io::TableError& error) {
     reader.report(key, error.what());
   }

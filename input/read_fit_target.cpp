@@ -9,6 +9,7 @@
 #include "input/read_keys.hpp"
 #include "input/read_scene.hpp"
 #include "input/resolved_scene.hpp"
+#include "io/atomic_file.hpp"
 
 namespace repose::input {
 
@@ -154,7 +155,14 @@ void TargetReader::read_scene_target(TomlReader& table, const TargetTable& given
   coarse.insert(coarse.end(), given.coarse.begin(), given.coarse.end());
   if (!file_.ok() || data.x.empty()) return;
   const auto simulator = [&](const std::vector<std::string>& with) {
-    InputFile input = InputFile::read(path, with);
+    InputFile input = [&] {
+      try {
+        return InputFile::read(path, with);
+      } catch (const io::IoError& error) {
+        throw io::IoError(path, fmt::format("{}, which {} names", error.reason(),
+                                            to_string(file_.origin(table.path_of("scene")))));
+      }
+    }();
     CollapseExperiment e;
     e.scene = read_scene(input);
     // the fit file alone does not tell all that its starts depend on

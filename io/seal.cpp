@@ -1,5 +1,6 @@
 #include "io/seal.hpp"
 
+#include <algorithm>
 #include <cerrno>
 
 #include <fcntl.h>
@@ -14,6 +15,7 @@ namespace repose::io {
 namespace {
 
 constexpr std::string_view mark = "repose-seal ";
+constexpr std::size_t most_of_a_stream = 32'000'000;
 constexpr std::size_t seal_length = mark.size() + 20 + 1 + 16 + 1;
 
 std::string seal_of(std::string_view content) {
@@ -32,12 +34,14 @@ std::string read_bytes(const std::filesystem::path& file, std::size_t most) {
   if (fd < 0) throw IoError(file, "cannot read", errno);
   std::string bytes;
   struct stat status {};
-  if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode) &&
-      static_cast<std::size_t>(status.st_size) <= most)
-    bytes.reserve(static_cast<std::size_t>(status.st_size) + 1);
+  const bool regular = ::fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+  const std::size_t length = regular ? static_cast<std::size_t>(status.st_size) : 0;
+  // what does not say its length may never end
+  if (!regular) most = std::min(most, most_of_a_stream);
+  if (length <= most) bytes.reserve(length + 1);
   constexpr std::size_t part = 1 << 16;
   int error = 0;
-  while (bytes.size() <= most) {
+  while (length <= most && bytes.size() <= most) {
     const std::size_t before = bytes.size();
     bytes.resize(before + part);
     const ssize_t n = ::read(fd, bytes.data() + before, part);
@@ -49,7 +53,7 @@ std::string read_bytes(const std::filesystem::path& file, std::size_t most) {
   }
   ::close(fd);
   if (error != 0) throw IoError(file, "cannot read", error);
-  if (bytes.size() > most)
+  if (length > most || bytes.size() > most)
     throw IoError(file, fmt::format("is longer than {} MB, or never ends", most / 1'000'000));
   return bytes;
 }

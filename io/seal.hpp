@@ -18,8 +18,8 @@ std::string sealed(std::string content);
 /// than its content has.
 std::string read_sealed(const std::filesystem::path& file);
 
-/// The bytes of a file, at most `most` of them. Errors: IoError if it cannot be read, is a folder,
-/// or is longer (a device may never end).
+/// The bytes of a file, at most `most` of them, and of a pipe or a device at most 32 MB. Errors:
+/// IoError if it cannot be read, is a folder, or is longer (a device may never end).
 std::string read_bytes(const std::filesystem::path& file, std::size_t most = std::size_t{1} << 40);
 
 }  // namespace repose::io

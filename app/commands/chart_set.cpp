@@ -48,6 +48,9 @@ class Set {
         for (const std::string& problem : error.problems())
           problems.push_back(
               fmt::format("{}, chart \"{}\": {}", to_string(part.origin), part.name, problem));
+      } catch (const io::IoError& error) {
+        problems.push_back(
+            fmt::format("{}, chart \"{}\": {}", to_string(part.origin), part.name, error.what()));
       }
     if (!problems.empty()) throw input::BadInput(std::move(problems));
   }

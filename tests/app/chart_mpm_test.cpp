@@ -11,6 +11,7 @@
 
 #include "app/command_line.hpp"
 #include "io/json.hpp"
+#include "io/result_folder.hpp"
 #include "repose_version.hpp"
 #include "study/accuracy/sweep.hpp"
 #include "tests/app/csv_table.hpp"
@@ -243,6 +244,7 @@ TEST_F(ChartMpm, RunsOfAnotherSolverAreRepeated) {
   io::Json marked = io::Json::parse(content_of(folder / "summary.json"));
   marked["front_m"] = 123.0;
   std::ofstream(folder / "summary.json") << marked;
+  io::ResultFolder(folder).seal();
   EXPECT_EQ(front(), 123.0) << "it is not repeated";
   std::string input = content_of(folder / "input.toml");
   const std::size_t digest = input.find(solver_digest);

@@ -184,7 +184,7 @@ const std::vector<Mistake> mistakes{
      "no such file", "did you mean clay.toml?"},
     // the start
     {"OcrBelowOne", point, c, "ocr = 1.0", "ocr = 0.5", "clay.toml:12:1",
-     "initial.ocr = 0.5 is out of range", ">= 1"},
+     "initial.ocr = 0.5 is out of range", "in [1, 1e+06]"},
     {"NegativePressure", point, c, "p = 207e3", "p = -207e3", "clay.toml:11:1",
      "the initial p must be > p_sep", "compression is positive"},
     {"PressureTwice", point, c, "ocr = 1.0", "ocr = 1.0\nsigma_v = 2e5", "clay.toml:13:1",

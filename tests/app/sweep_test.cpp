@@ -6,6 +6,7 @@
 
 #include "app/command_line.hpp"
 #include "input/read_sweep.hpp"
+#include "io/fingerprint.hpp"
 #include "io/json.hpp"
 #include "tests/app/csv_table.hpp"
 
@@ -139,11 +140,14 @@ TEST_F(Sweep, TheThreadsDoNotMatterAndNeitherDoesAnInterruption) {
 
   // what a kill leaves: whole lines of the log, a line cut short, rows of curves beyond them
   const std::string curves = read("one/curves.csv");
-  const auto line = [](int run) {
+  const auto line = [&](int run) {
+    const std::size_t begin = curves.find(fmt::format("\n{},", run)) + 1;
+    const std::size_t end = curves.find(fmt::format("\n{},", run + 1)) + 1;
     return fmt::format(
-        R"({{"run":{},"status":"done","reason":"kept","rows":21,"wall_s":0.0,"figures":{{}}}})"
+        R"({{"run":{},"status":"done","reason":"kept","rows":21,"wall_s":0.0,"figures":{{}},)"
+        R"("checksum":"{}"}})"
         "\n",
-        run);
+        run, io::fingerprint_of(curves.substr(begin, end - begin)));
   };
   fs::create_directory(folder_ / "cut");
   fs::copy(folder_ / "one/input.toml", folder_ / "cut/input.toml");
@@ -157,6 +161,16 @@ TEST_F(Sweep, TheThreadsDoNotMatterAndNeitherDoesAnInterruption) {
   EXPECT_EQ(kept[2], whole[2]);
   EXPECT_EQ(kept[149], whole[149]);
   EXPECT_EQ(io::Json::parse(read("cut/summary.json"))["runs_kept"], 2);
+  // rows that are not those that the log tells of are driven again
+  fs::create_directory(folder_ / "changed");
+  fs::copy(folder_ / "one/input.toml", folder_ / "changed/input.toml");
+  std::string changed = curves;
+  changed[changed.find("\n2,") + 4] ^= 1;
+  write("changed/curves.csv", changed);
+  write("changed/finished.jsonl", line(1) + line(2) + line(3));
+  ASSERT_EQ(run("point", file, "changed", {"--resume"}), 0);
+  EXPECT_EQ(read("changed/curves.csv"), curves);
+  EXPECT_EQ(io::Json::parse(read("changed/summary.json"))["runs_kept"], 1);
   // finished: nothing is done again
   const auto written = fs::last_write_time(folder_ / "cut/curves.csv");
   ASSERT_EQ(run("point", file, "cut", {"--resume"}), 0);

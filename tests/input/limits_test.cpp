@@ -190,6 +190,12 @@ TEST(Limits, AFileThatNeverEnds) {
   } catch (const io::IoError& error) {
     EXPECT_STREQ(error.what(), "/dev/zero: is longer than 1 MB, or never ends");
   }
+  try {  // whatever a caller takes, a device gets no gigabyte
+    io::read_bytes("/dev/zero");
+    FAIL();
+  } catch (const io::IoError& error) {
+    EXPECT_STREQ(error.what(), "/dev/zero: is longer than 32 MB, or never ends");
+  }
   const ScratchFolder folder;
   std::ofstream(folder.path() / "exact") << "12345";
   EXPECT_EQ(io::read_bytes(folder.path() / "exact", 5), "12345");
