@@ -166,8 +166,7 @@ void require_sound(const PointsOf<dim>& points, std::size_t body,
                             (cell <= grid.cells()[a] || !closed(walls.high(a)));
         const bool at_home = cell >= first - 1 && cell <= first + Shape<dim>::cells[a];
         const bool padding = s >= range.begin + range.count;
-        if (!(at_home || (moved && (padding || inside))))
-          fail("a point lies outside of its block");
+        if (!(at_home || (moved && (padding || inside)))) fail("a point lies outside of its block");
       }
     }
   }
