@@ -9,6 +9,7 @@
 /// With T a dual number the steps are chosen by values and the event times carry derivatives, so
 /// the kink at yield is differentiated too.
 
+#include "pointdriver/integrate/bracketed_zero.hpp"
 #include "pointdriver/integrate/leg_run.hpp"
 #include "pointdriver/path/settings.hpp"
 
@@ -238,33 +239,21 @@ class Adaptive {
     return found;
   }
 
-  /// Root of the event on the continuous extension: bisection and secant in turn (Illinois), at
-  /// most 80 evaluations.
+  /// Root of the event on the continuous extension, on its far side.
   double locate(Run& run, int event, const Y& y, const T& t, const T& h, double high,
                 double g_high) {
-    double low = 0.0;
-    double g_low = probe(run, event, y, k_[0], t);
-    if (g_low >= 0.0) g_low = -1e-300;  // it starts on the boundary and leaves it
+    // it may start on its boundary and leave it
+    const double g_low = std::min(probe(run, event, y, k_[0], t), -1e-300);
     const bool needs_rate =
         run.event(event).kind == EventKind::branch && run.flow().branch == Branch::plastic;
     Y dy = k_[6];
-    for (int i = 0; i < 80 && high - low > 1e-14; ++i) {
-      double theta =
-          (i % 3 == 2) ? 0.5 * (low + high) : high - g_high * (high - low) / (g_high - g_low);
-      if (!(theta > low && theta < high)) theta = 0.5 * (low + high);
+    Bracket found{0.0, high, g_low, g_high};
+    narrow(found, 1e-14, [&](double theta, bool& ok) {
       const Y here = dense(y, h, theta);
-      if (needs_rate && !run.flow().rate(here, dy)) break;
-      const double g = probe(run, event, here, dy, t + theta * h);
-      if (g == 0.0) return theta;
-      if (g > 0.0) {
-        high = theta;
-        g_high = g;
-      } else {
-        low = theta;
-        g_low = g;
-      }
-    }
-    return high;
+      ok = !needs_rate || run.flow().rate(here, dy);
+      return ok ? probe(run, event, here, dy, t + theta * h) : 0.0;
+    });
+    return found.g_before == 0.0 ? found.before : found.after;
   }
 
   /// Repeats the step so that it ends at the event, to the method's order and with the derivative

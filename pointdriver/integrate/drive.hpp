@@ -41,40 +41,72 @@ Readout<T> make_readout(const ElementStart<L, T>& start, Frame frame) {
 
 namespace detail {
 
+/// A leg whose last row is to meet its goal.
+template <class T>
+struct GridLength {
+  T length;
+  bool meets_goal;  ///< to round-off; else a leg of this length crosses it in its last step
+};
+
 /// The length of a leg whose last row is to meet its goal, when the steps depend on the length: the
-/// goal's miss is brought to round-off by secants on the leg driven without rows (at most 12 times;
-/// the adaptive methods miss by nothing and need none).
+/// goal's miss at the end of the leg, driven without rows, is brought to 0 from the time `found`
+/// with other steps. (The adaptive methods miss by nothing.) Where a step is cut for convergence
+/// the miss may jump over 0. Nothing: no length near `found` was seen to cross the goal.
 template <class I, class L, class T>
-T length_on_grid(I& integrator, Flow<L, T>& flow, const Readout<T>& readout, const Path& path,
-                 int index, const T& time, const typename Flow<L, T>::Y& start, const T& found) {
+std::optional<GridLength<T>> length_on_grid(I& integrator, Flow<L, T>& flow,
+                                            const Readout<T>& readout, const Path& path, int index,
+                                            const T& time, const typename Flow<L, T>::Y& start,
+                                            const T& found) {
   if constexpr (!std::is_same_v<I, Implicit<L, T>>) {
-    return found;
+    return GridLength<T>{found, true};
   } else {
     const Goal goal = *path.legs[static_cast<std::size_t>(index)].spec().goal;
+    const T nan(std::numeric_limits<double>::quiet_NaN());
+    LegRun<L, T> at_start(flow, readout, path, index, time, start, nullptr);
+    const double begins_at = value(at_start.reached(goal, start, T(0.0)));
+    const double sign = begins_at <= goal.value ? 1.0 : -1.0;
     const auto miss = [&](const T& length) {
       typename Flow<L, T>::Y y = start;
       LegRun<L, T> run(flow, readout, path, index, time, start, nullptr);
       run.fix_duration(length);
       const LegEnd<T> end = integrator.drive(run, y);
-      return end.status == Status::completed ? run.reached(goal, y, end.elapsed) - T(goal.value)
-                                             : T(std::numeric_limits<double>::quiet_NaN());
+      return end.status == Status::completed
+                 ? T(sign) * (run.reached(goal, y, end.elapsed) - T(goal.value))
+                 : nan;
     };
-    double before = value(found) * (1.0 - 1e-4), now = value(found);
-    double miss_before = value(miss(T(before)));
-    double slope = 0.0;
-    for (int i = 0; i < 12; ++i) {
-      const double miss_now = value(miss(T(now)));
-      if (now != before) slope = (miss_now - miss_before) / (now - before);
-      if (!std::isfinite(slope) || slope == 0.0) return found;
-      const double next = now - miss_now / slope;
-      before = now;
-      miss_before = miss_now;
-      if (std::abs(next - now) <= 1e-14 * std::abs(now)) break;
-      now = next;
-      if (!(now > 0.5 * value(found) && now < 2.0 * value(found))) return found;
+    const auto g = [&](double length, bool&) { return value(miss(T(length))); };
+    bool ok = true;
+    const double first = value(found), g_first = g(first, ok);
+    Bracket b{first, first, g_first, g_first};
+    for (double away = 1e-6; away < 0.5 && !(b.g_before <= 0.0 && b.g_after > 0.0); away *= 8.0) {
+      if (!(g_first > 0.0)) {
+        b.before = b.after;
+        b.g_before = b.g_after;
+        b.after = first * (1.0 + away);
+        b.g_after = g(b.after, ok);
+      } else {
+        b.after = b.before;
+        b.g_after = b.g_before;
+        b.before = first * (1.0 - away);
+        b.g_before = g(b.before, ok);
+      }
+      if (std::isnan(b.g_before) || std::isnan(b.g_after)) return {};
     }
-    const T residual = miss(T(now));  // its dual part moves the length
-    return T(now) - (residual - T(value(residual))) / T(slope);
+    if (!(b.g_before <= 0.0 && b.g_after > 0.0)) return {};
+    if (!narrow(b, 1e-15 * first, g)) return {};
+    const double length = -b.g_before <= b.g_after ? b.before : b.after;
+    const double left = std::min(-b.g_before, b.g_after);
+    // 1e-11: round-off of some hundred updates, each met to 1e-12 at worst
+    if (!(left <= 1e-11 * std::max(std::abs(goal.value), std::abs(begins_at)))) return GridLength<T>{T(b.after), false};
+    if constexpr (std::is_same_v<T, double>) {
+      return GridLength<T>{length, true};
+    } else {  // the derivative of the length by that of the miss
+      const double delta = 1e-6 * length;
+      const double slope = (g(length + delta, ok) - g(length - delta, ok)) / (2.0 * delta);
+      const T here = miss(T(length));
+      if (!std::isfinite(slope) || slope == 0.0) return {};
+      return GridLength<T>{T(length) - (here - T(value(here))) / T(slope), true};
+    }
   }
 }
 
@@ -92,10 +124,18 @@ LegEnd<T> drive_leg(I& integrator, Flow<L, T>& flow, const Readout<T>& readout, 
     whole = value(scout.duration());
     const LegEnd<T> end = integrator.drive(scout, probe);
     if (end.status == Status::completed) {
+      const auto grid =
+          length_on_grid<I, L, T>(integrator, flow, readout, path, index, time, y, end.elapsed);
       LegRun<L, T> run(flow, readout, path, index, time, y, &rows);
-      run.fix_duration(
-          length_on_grid<I, L, T>(integrator, flow, readout, path, index, time, y, end.elapsed));
-      return integrator.drive(run, y);
+      if (grid && grid->meets_goal) {
+        run.fix_duration(grid->length);
+        return integrator.drive(run, y);
+      }
+      // rows as even as may be, and the goal looked for again where they end
+      if (grid) run.bound_duration(grid->length);
+      const LegEnd<T> last = integrator.drive(run, y);
+      run.write_final(y, last.elapsed);
+      return last;
     }
   }
   LegRun<L, T> run(flow, readout, path, index, time, y, &rows);

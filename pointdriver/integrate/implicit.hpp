@@ -8,6 +8,9 @@
 /// The only method for laws whose stress follows the strain rate at once (has_stress_memory ==
 /// false): there the update is algebraic in D and ρ.
 
+#include <optional>
+
+#include "pointdriver/integrate/bracketed_zero.hpp"
 #include "pointdriver/integrate/leg_run.hpp"
 #include "pointdriver/path/settings.hpp"
 
@@ -36,16 +39,20 @@ class Implicit {
       for (int cut = 0;;) {
         if (!(value(dt) > 0.0)) break;
         if (counts_.steps >= settings_.max_steps) return {Status::step_limit, t, -1};
-        if (!step(run, y, t, dt)) {
+        bool converged = step(run, y, t, dt);
+        if (const int e = converged ? crossed(run, t + dt) : -1; e >= 0) {
+          if (const std::optional<LegEnd<T>> end = end_at(run, y, t, dt, e)) {
+            ++counts_.events;
+            return *end;
+          }
+          converged = false;  // somewhere on the way to the event
+        }
+        if (!converged) {
           ++counts_.rejected;
           if (++cut > 30) return {Status::not_converged, t, -1};
           dt = T(0.5 * value(dt));
           guess_ = first_guess_;
           continue;
-        }
-        if (const int e = crossed(run, t + dt); e >= 0) {
-          ++counts_.events;
-          return end_at(run, y, t, dt, e);
         }
         y = next_;
         t = t + dt;
@@ -292,50 +299,42 @@ class Implicit {
     return -1;
   }
 
-  /// Shortens the step until it ends at event e: bisection and secant in turn, at most 180
-  /// updates (60 bisections: to 2^−60, where secants come from one side alone or do not converge).
-  LegEnd<T> end_at(Run& run, Y& y, const T& t, const T& whole, int e) {
-    double low = 0.0, high = value(whole);
-    double g_low = value(run.event_value(e, y, t));
-    double g_high = value(run.event_value(e, next_, t + whole));
-    double slope = 0.0;
-    for (int i = 0; i < 180 && high - low > 1e-13 * value(whole); ++i) {
-      double dt = i % 3 == 2 ? 0.5 * (low + high) : high - g_high * (high - low) / (g_high - g_low);
-      if (!(dt > low && dt < high)) dt = 0.5 * (low + high);
-      if (!step(run, y, t, T(dt))) {
-        guess_ = first_guess_;                  // as drive() does where a step is halved
-        if (!step(run, y, t, T(dt))) continue;  // the next bisection ends it elsewhere
-      }
-      const double g = value(run.event_value(e, next_, t + T(dt)));
-      if (high > low) slope = (g_high - g_low) / (high - low);
-      if (g > 0.0) {
-        high = dt;
-        g_high = g;
-      } else {
-        low = dt;
-        g_low = g;
-      }
-      if (g == 0.0) break;
-    }
-    T dt(low > 0.0 ? low : high);
-    if (!step(run, y, t, dt)) return {Status::not_converged, t, -1};
+  /// Shortens the step until it ends at event e, on its near side; nothing where an update on the
+  /// way does not converge.
+  std::optional<LegEnd<T>> end_at(Run& run, Y& y, const T& t, const T& whole, int e) {
+    const auto g = [&](double dt, bool& ok) {
+      ok = step(run, y, t, T(dt));
+      return ok ? value(run.event_value(e, next_, t + T(dt))) : 0.0;
+    };
+    // it may start on its value and leave it
+    const double at_start = std::min(value(run.event_value(e, y, t)), -1e-300);
+    Bracket found{0.0, value(whole), at_start, value(run.event_value(e, next_, t + whole))};
+    if (!narrow(found, 1e-13 * value(whole), g)) return {};
+    T dt(found.before > 0.0 ? found.before : found.after);
     if constexpr (!std::is_same_v<T, double>) {
-      if (slope != 0.0) {  // derivative of the event's time
-        const T g = run.event_value(e, next_, t + dt);
-        dt = dt - (g - T(value(g))) / T(slope);
-        if (!step(run, y, t, dt)) return {Status::not_converged, t, -1};
+      // dt = dt − (dg)/ġ for the derivative of the event's time; ġ by central differences, whose
+      // error is 1e-12 of it by the step's curvature and 1e-10 by round-off
+      const double delta = 1e-6 * value(whole);
+      const double ahead = value(dt) + delta, behind = std::max(value(dt) - delta, 0.5 * value(dt));
+      bool ok_ahead = true, ok_behind = true;
+      const double slope = (g(ahead, ok_ahead) - g(behind, ok_behind)) / (ahead - behind);
+      if (!ok_ahead || !ok_behind || !step(run, y, t, dt)) return {};
+      if (slope != 0.0) {
+        const T here = run.event_value(e, next_, t + dt);
+        dt = dt - (here - T(value(here))) / T(slope);
       }
     }
+    if (!step(run, y, t, dt)) return {};
     y = next_;
     ++counts_.steps;
     const T end = t + dt;
     switch (run.event(e).kind) {
       case EventKind::contact:
-        return {Status::separated, end, -1};
+        return LegEnd<T>{Status::separated, end, -1};
       case EventKind::stop:
-        return {Status::stopped, end, run.event(e).index};
+        return LegEnd<T>{Status::stopped, end, run.event(e).index};
       default:
-        return {Status::completed, end, -1};
+        return LegEnd<T>{Status::completed, end, -1};
     }
   }
 

@@ -84,6 +84,8 @@ class LegRun {
         events_[static_cast<std::size_t>(i)].sign = 0.0;
     timed_ = true;
   }
+  /// Drives to a goal on the way for no longer than this.
+  void bound_duration(const T& duration) { duration_ = duration; }
   bool nothing_to_do() const { return nothing_to_do_; }
   const LegSpec& spec() const { return leg_.spec(); }
   int event_count() const { return n_events_; }
