@@ -97,7 +97,8 @@ std::optional<GridLength<T>> length_on_grid(I& integrator, Flow<L, T>& flow,
     const double length = -b.g_before <= b.g_after ? b.before : b.after;
     const double left = std::min(-b.g_before, b.g_after);
     // 1e-11: round-off of some hundred updates, each met to 1e-12 at worst
-    if (!(left <= 1e-11 * std::max(std::abs(goal.value), std::abs(begins_at)))) return GridLength<T>{T(b.after), false};
+    if (!(left <= 1e-11 * std::max(std::abs(goal.value), std::abs(begins_at))))
+      return GridLength<T>{T(b.after), false};
     if constexpr (std::is_same_v<T, double>) {
       return GridLength<T>{length, true};
     } else {  // the derivative of the length by that of the miss

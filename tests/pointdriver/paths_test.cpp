@@ -174,8 +174,8 @@ TEST(Paths, cycles_turn_at_their_limits_whatever_these_are) {
           const double up = 20e3 + 110.0 * n;
           Stage half = triaxial(c, 0.0, 8);
           half.drive = drive;
-          const PointTest test = make_test(cycles(half, Quantity::q, -10e3, up, 2), 100e3,
-                                           1.05 + 8e-4 * n, method);
+          const PointTest test =
+              make_test(cycles(half, Quantity::q, -10e3, up, 2), 100e3, 1.05 + 8e-4 * n, method);
           const Curve curve = run(law, test);
           ASSERT_EQ(curve.outcome.status, Status::completed) << n << " " << name_of(method);
           const auto q = column(law, test, curve, Quantity::q);
