@@ -140,14 +140,13 @@ class LawMaterial final : public Material {
   [[gnu::always_inline]] static void update(const typename L::template Params<T>& P,
                                             const BatchOf<N>& batch, std::size_t i,
                                             UpdateReport& report) {
-    using std::exp;
     const T zero(0.0);
     Increment<T, N> inc;
     inc.dt = T(batch.dt);
     for (int k = 0; k < N; ++k) inc.strain[k] = load<T>(batch.strain[index(k)] + i);
     // ρ after the step: d ln ρ = −tr D dt, exact for a constant rate of logarithmic strain
     const T density_before = load<T>(batch.density + i);
-    inc.density = density_before * exp(T(-trace(inc.strain)));
+    inc.density = density_before * exp_pair(T(-trace(inc.strain))).whole;
     const Point<T, N> given = load_point<T>(batch, i);
     Point<T, N> point = given;
     if (batch.spin[0] != nullptr) {
@@ -161,8 +160,8 @@ class LawMaterial final : public Material {
     const Sym<T, N> before = point.stress;
     StepWork<T> spent;
     auto failed = L::update(P, inc, point.stress, point.state, &spent);
-    failed = failed || !(inc.dt >= zero) || !(inc.density > zero) || !finite(inc.density) ||
-             !finite(contract(before, before));
+    failed = failed || negated(inc.dt >= zero && inc.density > zero && finite(inc.density) &&
+                               finite(contract(before, before)));
     T work = T(0.5) * contract(before + point.stress, inc.strain);
     if (any(failed)) {
       note_failure<T>(failed, i, batch.count, report);

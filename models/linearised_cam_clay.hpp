@@ -43,7 +43,7 @@ struct LinearisedCamClay : ModifiedCamClay<Compression::ln_v_ln_p> {
     T p_c = p_cn;
     T D = one;
     const T F_trial = q2_M2 - p * (p_c - p);
-    const auto plastic = !was_lost && F_trial > T(1e-12) * p_n * p_cn;
+    const auto plastic = negated(was_lost) && F_trial > T(1e-12) * p_n * p_cn;
     auto active = plastic;
     const T slope_D = T(6.0) * G / square(P.M);
     for (int step = 0; step < 50 && any(active); ++step) {
@@ -52,7 +52,7 @@ struct LinearisedCamClay : ModifiedCamClay<Compression::ln_v_ln_p> {
       const T F = q2_M2 / square(D) - p * (p_c - p);
       const auto done = volume * volume <= T(1e-24) * square(P.kappa) &&
                         F * F <= T(1e-20) * square(T(p_n * p_cn));
-      active = active && !done;
+      active = active && negated(done);
       if (!any(active)) break;
       const T p_z = -p * p / (p_n * P.kappa);          // dp/dz
       const T p_c_z = p_c * p_c / (p_cn * hardening);  // dp_c/dz
@@ -68,12 +68,12 @@ struct LinearisedCamClay : ModifiedCamClay<Compression::ln_v_ln_p> {
       D = one + slope_D * multiplier;
     }
     const auto defined =
-        !was_lost && !active && finite(p) && finite(p_c) && finite(D) && p > zero && p_c > zero;
+        negated(was_lost || active) && finite(p) && finite(p_c) && finite(D) && p > zero && p_c > zero;
     const Sym<T, N> next = (one / D) * s_trial - Sym<T, N>::isotropic(p - P.p_shift);
     for (int i = 0; i < N; ++i) stress[i] = select(defined, next[i], zero);
     at[i_p_c] = select(defined, p_c, at[i_p_c]);
     at[i_rho_sep] = select(defined, zero, T(lost_density));
-    return !(inc.density > zero);
+    return negated(inc.density > zero);
   }
 };
 

@@ -146,9 +146,8 @@ struct ModifiedCamClay {
   /// Its first part, at p̃ with κ*.
   template <class T>
   static T compression_energy(const Params<T>& P, const T& bearing, const T& kappa) {
-    using std::log;
     const T one(1.0);
-    const T ln_p = log(bearing / select(P.p_shift > T(0.0), P.p_shift, one));
+    const T ln_p = ln(T(bearing / select(P.p_shift > T(0.0), P.p_shift, one)));
     // r − 1 + κ = κ(1 + ln(p̃/p_s)(e^{κ ln(p̃/p_s)} − 1)/(κ ln(p̃/p_s)))
     return compression == Compression::ln_v_ln_p
                ? kappa * (bearing - P.p_shift * (one + ln_p * expm1_over(T(kappa * ln_p)))) /
@@ -160,11 +159,10 @@ struct ModifiedCamClay {
   template <class T, int N>
   static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
                                  const T& density) {
-    using std::log;
     const T contact = contact_pressure(P);
     const T p = pressure(stress) + P.p_shift;
     const T bearing = select(at[i_rho_sep] > T(0.0) || p < contact, contact, p);
-    return -kappa_star(P, specific_volume(P, density)) * log(bearing / contact);
+    return -kappa_star(P, specific_volume(P, density)) * ln(T(bearing / contact));
   }
 
   /// At rest under p with p_c = ocr p, on the law's own lines; needs Γ or N.

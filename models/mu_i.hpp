@@ -34,7 +34,7 @@ inline constexpr ParamInfo K{"K", "K",      "Pa",      "bulk modulus", Need::req
 
 template <class P, class T>
 T pressure_of(const P& par, const T& density) {
-  return floor_at(T(par.K * (density / par.rho_0 - T(1.0))), 0.0);  // MUI-1, no tension
+  return floor_at(T(par.K / par.rho_0 * (density - par.rho_0)), 0.0);  // MUI-1, no tension
 }
 
 /// γ̇ = √(2D′:D′)
@@ -59,16 +59,14 @@ T inertial_number(const P& par, const T& p, const T& gamma_dot) {
 /// ρ ∫ p/ρ² dρ from ρ0 = K(r ln r − r + 1), r = ρ/ρ0
 template <class P, class T>
 T compression_energy(const P& par, const T& density) {
-  using std::log;
   const T r = density / par.rho_0;
-  return select(r < T(1.0), T(0.0), T(par.K * (r * log(r) - r + T(1.0))));
+  return select(r < T(1.0), T(0.0), T(par.K * (r * ln(r) - r + T(1.0))));
 }
 
 /// −∫dp/K with K = K_0 + p of MUI-1 (K_0: at p = 0): ln(ρ0/ρ) in contact, 0 for a loose point.
 template <class P, class T>
 T elastic_volume_strain(const P& par, const T& p) {
-  using std::log;
-  return -log(T(1.0) + p / par.K);
+  return -ln(T(T(1.0) + p / par.K));
 }
 
 template <class P>
@@ -168,7 +166,7 @@ struct MuIElastoviscoplastic {
     const T ratio = select(elastic, T(1.0),
                            T(T(2.0) * H / select(elastic, T(1.0), T(two_H_over_tau * tau_trial))));
     const Sym<T, N> next = ratio * s_trial - Sym<T, N>::isotropic(p);
-    const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
+    const auto failed = negated(finite(T(contract(next, next))) && inc.density > T(0.0));
     if (spent != nullptr) {
       // Δe^p = (γ̇_pΔt/2τ_tr) s_tr with Gγ̇_pΔt = τ_tr − τ, along the return; s_{n+1} = (τ/τ_tr) s_tr
       const T quarter = T(0.25) / P.G;
@@ -229,7 +227,7 @@ struct MuIElastoviscoplastic {
   template <class T, int N>
   static T modulus(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density) {
     // apart from its neighbours a point keeps the wave speed it will have on contact, c(ρ0)
-    const T r = density / P.rho_0;
+    const T r = density * (T(1.0) / P.rho_0);
     const T shear = T(4.0 / 3.0) * P.G;
     return P.K * r + select(r < T(1.0), T(shear * r), shear);
   }
@@ -311,7 +309,7 @@ struct Viscous {
     const T eta = Law::effective_viscosity(P, p, T(T(2.0) * shear_norm(D_dev)));
     const Sym<T, N> viscous = (T(2.0) * eta) * D_dev;
     const Sym<T, N> next = viscous - Sym<T, N>::isotropic(p);
-    const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
+    const auto failed = negated(finite(T(contract(next, next))) && inc.density > T(0.0));
     if (spent != nullptr) {
       // all of the deviator is viscous: ½(s_n + s_{n+1}):Δe
       spent->viscous = T(0.5) * contract(deviator(stress) + viscous, inc.strain);

@@ -57,8 +57,8 @@ struct NeoHookean {
     const T inv_J = T(1.0) / J;
     const Sym<T, N> next = exp_pair(T(-tr)).whole * stress +
                            inv_J * (Sym<T, N>::isotropic(P.lambda * tr) + P.mu * stretched(b, E));
-    auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
-    for (int i = 0; i < N; ++i) failed = failed || !(square(inc.strain[i]) <= T(4.0));
+    auto failed = negated(finite(T(contract(next, next))) && inc.density > T(0.0));
+    for (int i = 0; i < N; ++i) failed = failed || negated(square(inc.strain[i]) <= T(4.0));
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
     return failed;
   }
@@ -90,10 +90,9 @@ struct NeoHookean {
   /// n·σn, with the largest n·σn bounded by the mean stress + √(2/3)|s|.
   template <class T, int N>
   static T modulus(const Params<T>& P, const Sym<T, N>& stress, const State<T>&, const T& density) {
-    using std::log;
     const T J = P.rho_0 / density;
     const T most = mean(stress) + T(2.0 / std::sqrt(3.0)) * shear_norm(deviator(stress));
-    const T M = (P.lambda * (T(1.0) - T(2.0) * log(J)) + T(2.0) * P.mu) / J + most;
+    const T M = (P.lambda * (T(1.0) - T(2.0) * ln(J)) + T(2.0) * P.mu) / J + most;
     const T shear = P.mu / J;  // far enough stretched, it yields along n: no wave, but still stiff
     return select(M > shear, M, shear);
   }
@@ -107,9 +106,8 @@ struct NeoHookean {
   template <class T, int N>
   static T stored_energy(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
                          const T& density) {
-    using std::log;
     const T J = P.rho_0 / density;
-    const T ln_J = log(J);
+    const T ln_J = ln(J);
     const T W = T(0.5) * P.lambda * ln_J * ln_J +
                 T(0.5) * (J * trace(stress) - T(3.0) * P.lambda * ln_J) - P.mu * ln_J;
     return W / J;
@@ -119,8 +117,7 @@ struct NeoHookean {
   template <class T, int N>
   static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>&, const State<T>&,
                                  const T& density) {
-    using std::log;
-    return log(P.rho_0 / density);
+    return ln(T(P.rho_0 / density));
   }
 
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {
@@ -188,9 +185,8 @@ struct NeoHookean {
   /// b = I + (Jσ − λ ln J I)/μ
   template <class T, int N>
   static Sym<T, N> left_cauchy_green(const Params<T>& P, const Sym<T, N>& stress, const T& J) {
-    using std::log;
     const T inv_mu = T(1.0) / P.mu;
-    return T(J * inv_mu) * stress + Sym<T, N>::isotropic(T(1.0) - P.lambda * inv_mu * log(J));
+    return T(J * inv_mu) * stress + Sym<T, N>::isotropic(T(1.0) - P.lambda * inv_mu * ln(J));
   }
 
   /// (I + E) b (I + E) − b

@@ -45,9 +45,7 @@ struct Newtonian {
   /// p = K[(ρ/ρ0)^α − 1]
   template <class T>
   static T equation_of_state(const Params<T>& P, const T& density) {
-    using std::expm1;
-    using std::log;
-    const T p = P.K * expm1(P.alpha * log(density / P.rho_0));
+    const T p = P.K * exp_pair(T(P.alpha * ln(T(density / P.rho_0)))).minus_one;
     return tension == Tension::cut_off ? floor_at(p, 0.0) : p;
   }
 
@@ -59,7 +57,7 @@ struct Newtonian {
     const T inv_dt = select(inc.dt > T(0.0), T(T(1.0) / inc.dt), T(T(0.0) * inc.dt));
     const Sym<T, N> viscous = (T(2.0) * P.eta * inv_dt) * deviator(inc.strain);
     const Sym<T, N> next = viscous - Sym<T, N>::isotropic(p);
-    const auto failed = !(finite(T(contract(next, next))) && inc.density > T(0.0));
+    const auto failed = negated(finite(T(contract(next, next))) && inc.density > T(0.0));
     if (spent != nullptr) {
       // all of the deviator is viscous: ½(s_n + s_{n+1}):Δe
       spent->viscous = T(0.5) * contract(deviator(stress) + viscous, inc.strain);
@@ -92,9 +90,7 @@ struct Newtonian {
   /// dp/dlnρ = αK(ρ/ρ0)^α, 0 where tension is cut off
   template <class T>
   static T bulk_modulus(const Params<T>& P, const T& density) {
-    using std::exp;
-    using std::log;
-    const T K = P.alpha * P.K * exp(P.alpha * log(density / P.rho_0));
+    const T K = P.alpha * P.K * exp_pair(T(P.alpha * ln(T(density / P.rho_0)))).whole;
     return tension == Tension::cut_off ? select(density < P.rho_0, T(0.0), K) : K;
   }
 
@@ -114,9 +110,8 @@ struct Newtonian {
   /// ρ ∫ p/ρ² dρ from ρ0 = K{[r^α − r]/(α − 1) − r + 1}, r = ρ/ρ0 (α = 1: K[r ln r − r + 1])
   template <class T, int N>
   static T stored_energy(const Params<T>& P, const Sym<T, N>&, const State<T>&, const T& density) {
-    using std::log;
     const T r = density / P.rho_0;
-    const T ln_r = log(r);
+    const T ln_r = ln(r);
     // (r^α − r)/(α − 1) = r ln r · (e^{(α−1) ln r} − 1)/((α−1) ln r), regular at α = 1
     const T W = P.K * (r * ln_r * expm1_over(T((P.alpha - T(1.0)) * ln_r)) - r + T(1.0));
     return tension == Tension::cut_off ? select(density < P.rho_0, T(0.0), W) : W;
@@ -126,8 +121,7 @@ struct Newtonian {
   template <class T, int N>
   static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>&,
                                  const T&) {
-    using std::log;
-    return -log(T(1.0) + pressure(stress) / P.K) / P.alpha;
+    return -ln(T(T(1.0) + pressure(stress) / P.K)) / P.alpha;
   }
 
   static double density_at(const Params<double>& P, double p, double /*ocr*/) {

@@ -48,7 +48,7 @@ struct TwinOf {
     typename P::batch_bool_type a, b;
     friend Mask operator&&(const Mask& x, const Mask& y) { return {x.a && y.a, x.b && y.b}; }
     friend Mask operator||(const Mask& x, const Mask& y) { return {x.a || y.a, x.b || y.b}; }
-    [[gnu::always_inline]] friend Mask operator!(const Mask& x) { return {!x.a, !x.b}; }
+    [[gnu::always_inline]] friend Mask operator!(const Mask& x) { return {~x.a, ~x.b}; }
   };
 
   friend TwinOf operator+(const TwinOf& x, const TwinOf& y) { return {x.a + y.a, x.b + y.b}; }
@@ -62,7 +62,6 @@ struct TwinOf {
   friend Mask operator>=(const TwinOf& x, const TwinOf& y) { return {x.a >= y.a, x.b >= y.b}; }
   friend Mask operator==(const TwinOf& x, const TwinOf& y) { return {x.a == y.a, x.b == y.b}; }
   friend TwinOf sqrt(const TwinOf& x) { return {xsimd::sqrt(x.a), xsimd::sqrt(x.b)}; }
-  friend TwinOf log(const TwinOf& x) { return {xsimd::log(x.a), xsimd::log(x.b)}; }
   friend TwinOf exp(const TwinOf& x) { return {xsimd::exp(x.a), xsimd::exp(x.b)}; }
   friend TwinOf expm1(const TwinOf& x) { return {xsimd::expm1(x.a), xsimd::expm1(x.b)}; }
 };
@@ -97,6 +96,12 @@ template <int n>
 Dual<n> select(bool mask, const Dual<n>& a, const Dual<n>& b) {
   return mask ? a : b;
 }
+
+/// What `!` says of a mask. (xsimd 10 makes `!` of an AVX2 mask by comparing its halves as integers: ten
+/// instructions for one.)
+inline bool negated(bool mask) { return !mask; }
+inline Mask<Pack> negated(const Mask<Pack>& mask) { return ~mask; }
+inline Mask<Twin> negated(const Mask<Twin>& mask) { return !mask; }
 
 inline bool any(bool mask) { return mask; }
 inline bool any(const Mask<Pack>& mask) { return xsimd::any(mask); }
@@ -134,6 +139,48 @@ inline Pack power_of_two(const Pack& shifted) {
 
 inline Twin power_of_two(const Twin& shifted) {
   return {power_of_two(shifted.a), power_of_two(shifted.b)};
+}
+
+/// ln x to 2 units in the last place (log of a Pack turns its exponents into doubles one by one where
+/// there is no AVX-512): x = 2^k m with √½ <= m < √2, and with s = (m − 1)/(m + 1), |s| <= 0.1716,
+///   ln m = 2(s + s³/3 + … + s²¹/21), whose next term is 2e-19 of it.
+/// NaN below 0, −∞ at 0, ∞ at ∞.
+inline Pack ln(const Pack& x) {
+  using Bits = xsimd::batch<std::uint64_t>;
+  constexpr std::uint64_t root_half = 0x3fe6a09e667f3bcd;  // of √½
+  constexpr std::uint64_t one_bits = std::uint64_t{1023} << 52;
+  constexpr std::uint64_t mantissa = (std::uint64_t{1} << 52) - 1;
+  constexpr double smallest = std::numeric_limits<double>::min();
+  const auto subnormal = x < Pack(smallest);
+  const Pack normal = select(subnormal, Pack(x * Pack(0x1p54)), x);
+  const Bits shifted = xsimd::bitwise_cast<Bits>(normal) + Bits(one_bits - root_half);
+  const Pack m = xsimd::bitwise_cast<Pack>((shifted & Bits(mantissa)) + Bits(root_half));
+  // the biased exponent as the lowest bits of 2^52 + exponent
+  const Pack biased = xsimd::bitwise_cast<Pack>((shifted >> 52) | Bits(std::uint64_t{1075} << 52));
+  const Pack k = biased - select(subnormal, Pack(0x1p52 + 1023.0 + 54.0), Pack(0x1p52 + 1023.0));
+  const Pack f = m - Pack(1.0);
+  const Pack s = f / (Pack(2.0) + f);
+  const Pack s2 = s * s;
+  const Pack s4 = s2 * s2;
+  const auto term = [](int n) { return Pack(2.0 / (2.0 * n + 1.0)); };
+  const Pack even = term(2) + s4 * (term(4) + s4 * (term(6) + s4 * (term(8) + s4 * term(10))));
+  const Pack odd = term(1) + s4 * (term(3) + s4 * (term(5) + s4 * (term(7) + s4 * term(9))));
+  // 2s = f − s f: the leading part without the rounding of s
+  const Pack tail = s2 * (odd + s2 * even);
+  constexpr double ln_2_high = 6.93147180369123816490e-01;  // 33 bits: k ln_2_high is exact
+  constexpr double ln_2_low = 1.90821492927058770002e-10;
+  const Pack ln_m = f - s * (f - tail);
+  const Pack result = k * Pack(ln_2_high) + (ln_m + k * Pack(ln_2_low));
+  const Pack infinity(std::numeric_limits<double>::infinity());
+  const Pack edge = select(x == Pack(0.0), Pack(-infinity),
+                           select(x == infinity, infinity, Pack(infinity - infinity)));
+  return select(x > Pack(0.0) && x < infinity, result, edge);
+}
+inline Twin ln(const Twin& x) { return {ln(x.a), ln(x.b)}; }
+template <class T>
+T ln(const T& x) {
+  using std::log;
+  return log(x);
 }
 
 /// eˣ and eˣ − 1, each to its own relative accuracy (2 units in the last place): 1 + (eˣ − 1) would

@@ -69,11 +69,16 @@ std::array<std::int32_t, Shape<dim>::around> GridOf<dim>::around(
 }
 
 template <int dim>
-void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
-  constexpr auto nodes = static_cast<std::size_t>(Shape<dim>::nodes);
+void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies, double anchor_offset) {
+  // the anchors of a block's points: its own nodes and, with an offset, the first ones behind it
+  constexpr auto anchors = [] {
+    std::size_t all = 1;
+    for (const int cells : Shape<dim>::cells) all *= static_cast<std::size_t>(cells + 1);
+    return all;
+  }();
   const double inv_h = 1.0 / h_;
-  // key of a point: block, then cell within the block
-  std::vector<std::vector<std::uint32_t>> keys(bodies.size());
+  // key of a point: block, then anchor within the block
+  std::vector<std::vector<std::uint64_t>> keys(bodies.size());
   std::vector<std::size_t> per_block(point_table_.size(), 0);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const PointsOf<dim>& points = bodies[b];
@@ -81,17 +86,20 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.slots(), 4096), [&](const auto& r) {
       for (std::size_t k = r.begin(); k != r.end(); ++k) {
         if (points.id[k] < 0) continue;
-        Index cell{}, at{};
-        for (std::size_t a = 0; a < cell.size(); ++a) {
-          cell[a] = static_cast<int>(std::floor(points[Layout<dim>::x + a][k] * inv_h));
-          at[a] = block_of_cell(a, cell[a]);
+        Index at{};
+        std::size_t place = 0;
+        for (std::size_t a = at.size(); a-- > 0;) {
+          const double xi = points[Layout<dim>::x + a][k] * inv_h;
+          at[a] = block_of_cell(a, static_cast<int>(std::floor(xi)));
+          const int anchor = static_cast<int>(std::floor(xi + anchor_offset)) - first(a, at[a]);
+          place = place * static_cast<std::size_t>(Shape<dim>::cells[a] + 1) +
+                  static_cast<std::size_t>(anchor);
         }
-        keys[b][k] = static_cast<std::uint32_t>(table_index(at) * nodes) +
-                     static_cast<std::uint32_t>(place_in(at, cell));
+        keys[b][k] = table_index(at) * anchors + place;
       }
     });
     for (std::size_t k = 0; k < points.slots(); ++k)
-      if (points.id[k] >= 0) ++per_block[keys[b][k] / nodes];
+      if (points.id[k] >= 0) ++per_block[keys[b][k] / anchors];
   }
 
   point_blocks.clear();
@@ -104,25 +112,25 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
     fresh.range.resize(bodies.size());
   }
 
-  const auto cell_slot = [&](std::uint32_t key) {
-    return static_cast<std::size_t>(point_table_[key / nodes]) * nodes + key % nodes;
+  const auto anchor_slot = [&](std::uint64_t key) {
+    return static_cast<std::size_t>(point_table_[key / anchors]) * anchors + key % anchors;
   };
-  std::vector<std::size_t> start(point_blocks.size() * nodes);
+  std::vector<std::size_t> start(point_blocks.size() * anchors);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     PointsOf<dim>& points = bodies[b];
     // counting sort with the ranges of the blocks rounded up to whole packs
     std::fill(start.begin(), start.end(), 0);
     for (std::size_t k = 0; k < points.slots(); ++k)
-      if (points.id[k] >= 0) ++start[cell_slot(keys[b][k])];
+      if (points.id[k] >= 0) ++start[anchor_slot(keys[b][k])];
     std::size_t next = 0;
     for (std::size_t block = 0; block < point_blocks.size(); ++block) {
-      const std::size_t first_key = block * nodes;
+      const std::size_t first_key = block * anchors;
       SlotRange& range = point_blocks[block].range[b];
       range.begin = next;
-      for (std::size_t key = first_key; key < first_key + nodes; ++key) {
-        const std::size_t in_cell = start[key];
+      for (std::size_t key = first_key; key < first_key + anchors; ++key) {
+        const std::size_t there = start[key];
         start[key] = next;
-        next += in_cell;
+        next += there;
       }
       range.count = next - range.begin;
       next = range.begin + padded(range.count);
@@ -131,7 +139,7 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies) {
     std::vector<bool> is_padding(next, true);
     for (std::size_t k = 0; k < points.slots(); ++k) {
       if (points.id[k] < 0) continue;
-      const std::size_t slot = start[cell_slot(keys[b][k])]++;
+      const std::size_t slot = start[anchor_slot(keys[b][k])]++;
       order[slot] = static_cast<std::uint32_t>(k);
       is_padding[slot] = false;
     }

@@ -39,7 +39,7 @@ struct Shape {
     if constexpr (dim == 2)
       return std::array{8, 8};
     else
-      return std::array{8, 4, 4};
+      return std::array{8, 8, 4};
   }();
   static constexpr std::array<int, axes> margin = [] {
     std::array<int, axes> nodes{};
@@ -164,10 +164,11 @@ class GridOf {
   static int first_x(int bx) { return first(0, bx); }
   static int first_y(int by) { return first(1, by); }
 
-  /// Sorts the points of all bodies by block and cell (stable, so the result depends on positions
-  /// and the former order only), and brings the blocks to life around them. Works on the threads of
-  /// the arena that it is called in.
-  void sort(std::vector<PointsOf<dim>>& bodies);
+  /// Sorts the points of all bodies by block and, within it, by the anchor of their stencils, the
+  /// node ⌊ξ + anchor_offset⌋ (stable, so the result depends on positions and the former order
+  /// only), and brings the blocks to life around them. Works on the threads of the arena that it is
+  /// called in.
+  void sort(std::vector<PointsOf<dim>>& bodies, double anchor_offset = 0.0);
 
   /// Takes over point blocks as sort() left them (from a checkpoint).
   void restore(std::vector<PointBlockOf<dim>> blocks);

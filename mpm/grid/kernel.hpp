@@ -45,6 +45,7 @@ struct CubicKernel {
   static constexpr double inverse_moment = 3.0;  ///< Σ w d² = 1/3
   static constexpr bool spline_gradient = false;
   static constexpr double gradient_scale = inverse_moment;
+  static constexpr double anchor_offset = 0.0;
 
   /// The node at or below the point.
   template <class T>
@@ -94,12 +95,13 @@ struct QuadraticKernel {
   static constexpr double inverse_moment = 4.0;  ///< Σ w d² = 1/4
   static constexpr bool spline_gradient = false;
   static constexpr double gradient_scale = inverse_moment;
+  static constexpr double anchor_offset = 0.5;
 
   /// The nearest node.
   template <class T>
   static T anchor(const T& xi) {
     using std::floor;
-    return floor(xi + T(0.5));
+    return floor(xi + T(anchor_offset));
   }
 
   template <class T>

@@ -20,7 +20,10 @@ constexpr std::size_t rows_per_pack = Pack::size / Row::size;
 
 /// Whole numbers below 2^32 held as doubles, to be stored where whole_number() reads them: adding
 /// 2^52 leaves them in the lowest bits.
-inline Pack as_bits(const Pack& whole) { return whole + Pack(0x1p52); }
+template <class T>
+T as_bits(const T& whole) {
+  return whole + T(0x1p52);
+}
 inline std::uint32_t whole_number(double bits) {
   return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(bits));
 }
@@ -116,19 +119,6 @@ Row row_of(const Pack& p) {
   return Row(p.data);
 }
 
-class RowTable {
- public:
-  using Index = __m256i;
-  explicit RowTable(const double* row) : row_(row) {}
-  Pack at(Index index) const { return Pack(_mm256_i64gather_pd(row_, index, sizeof(double))); }
-
-  static Index index(const Pack& column) {
-    return _mm256_and_si256(_mm256_castpd_si256(as_bits(column)), _mm256_set1_epi64x(15));
-  }
-
- private:
-  const double* row_;
-};
 #endif
 
 /// The smallest and the largest lane.

@@ -1,6 +1,6 @@
 #include "mpm/step/extended_pic.hpp"
 
-#include "mpm/grid/pack_stencil.hpp"
+#include "mpm/grid/point_stencil.hpp"
 #include "mpm/grid/tile_exchange.hpp"
 #include "mpm/step/simulation_impl.hpp"
 
@@ -19,16 +19,13 @@ void through_points(const PointSet& points, const SlotRange& range, double h,
     };
     const Pack x = at(X) * inv_h - x_0;
     const Pack y = at(Y) * inv_h - y_0;
-    const PackStencil<Kernel> stencil(x, y);
-    Pack vx(0.0), vy(0.0);
-    stencil.for_each_row([&](std::size_t row, const Pack& w, const Pack&) {
-      stencil.add(there.v[0].data() + row * tile_stride, w, vx);
-      stencil.add(there.v[1].data() + row * tile_stride, w, vy);
-    });
+    std::array<Moments, 0> none;
+    std::array<Pack, 2> v;
+    PointStencil<Kernel, 2>({x, y}).read({}, none, {there.v[0].data(), there.v[1].data()}, v);
     alignas(64) double px[Pack::size], py[Pack::size];
     alignas(64) double tx[Pack::size], ty[Pack::size], place[Pack::size];
-    (at(MASS) * vx).store_aligned(px);
-    (at(MASS) * vy).store_aligned(py);
+    (at(MASS) * v[0]).store_aligned(px);
+    (at(MASS) * v[1]).store_aligned(py);
     const Pack anchor_x = Kernel::anchor(x);
     const Pack anchor_y = Kernel::anchor(y);
     (x - anchor_x).store_aligned(tx);

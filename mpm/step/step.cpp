@@ -48,7 +48,9 @@ void Simulation::Impl<dim>::sort_if_needed() {
     }
   }
   remove_outflow();
-  arena.execute([&] { grid.sort(bodies); });
+  const double anchor_offset =
+      scene.kernel == Kernel::cubic ? CubicKernel::anchor_offset : QuadraticKernel::anchor_offset;
+  arena.execute([&] { grid.sort(bodies, anchor_offset); });
   tiles_are_current = false;
   drift = 0.0;
   must_sort = false;
