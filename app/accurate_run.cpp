@@ -274,10 +274,11 @@ class AccuracyCommand {
       return io::ExitCode::numerical_failure;
     }
     const study::SweepRun& run = work_.runs().back();
-    fmt::print(stderr, "{}: failed: {}\n", run.scene().name,
-               run.summary.reason.empty()
-                   ? fmt::format("it has no {}", study::column_of(request_.quantity))
-                   : run.summary.reason);
+    fmt::print(
+        stderr, "{}: failed: {}\n", run.scene().name,
+        run.summary.reason.empty()
+            ? fmt::format("it has no {}", study::column_of(request_.quantity, scene().dimensions()))
+            : run.summary.reason);
     return io::ExitCode::numerical_failure;
   }
 

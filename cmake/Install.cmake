@@ -20,6 +20,7 @@ set(repose_public_headers
   io/json.hpp
   io/vtkhdf.hpp
   models/ill_posedness.hpp
+  models/instruction_set.hpp
   models/law.hpp
   models/material.hpp
   models/padding.hpp
@@ -54,6 +55,7 @@ set(repose_law_headers
   models/scalar.hpp
   models/shear_response.hpp
   pointdriver/integrate/adaptive.hpp
+  pointdriver/integrate/bracketed_zero.hpp
   pointdriver/integrate/drive.hpp
   pointdriver/integrate/flow.hpp
   pointdriver/integrate/implicit.hpp

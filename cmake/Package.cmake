@@ -1,5 +1,6 @@
 # `cpack -G DEB` in the build folder: one Debian package with the program, the libraries, what links
-# them, and the licence. Configure it with -DREPOSE_NATIVE=OFF, or it runs on this machine's kind only.
+# them, and the licence. Configure it with -DREPOSE_NATIVE=OFF, or it runs on this machine's kind only, and
+# with -DREPOSE_MORE_SETS=x86-64-v4, or machines with AVX-512 do not use it.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME repose)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})

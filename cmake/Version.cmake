@@ -6,9 +6,7 @@
 # which optimisations it takes; libraries whose headers compute say their versions.
 separate_arguments(repose_flags_of_type UNIX_COMMAND
                    "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE}")
-if(REPOSE_NATIVE)
-  list(APPEND repose_flags_of_type -march=native)
-endif()
+list(APPEND repose_flags_of_type -march=${repose_march})
 execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${repose_flags_of_type} -dM -E -x c++ /dev/null
                 OUTPUT_VARIABLE repose_compiler_macros ERROR_QUIET)
 string(SHA256 repose_compiler_macros "${repose_compiler_macros}")
@@ -18,7 +16,7 @@ add_custom_target(repose_version_header
           -DSOURCE_DIR=${PROJECT_SOURCE_DIR}
           -DVERSION=${PROJECT_VERSION}
           -DOUTPUT=${PROJECT_BINARY_DIR}/generated/repose_version.hpp
-          "-DCOMPILED=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE} ${REPOSE_NATIVE} ${REPOSE_VECTOR_512} ${REPOSE_SANITIZE} ${REPOSE_UNITY} ${repose_compiler_macros} ${repose_libraries}"
+          "-DCOMPILED=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_BUILD_TYPE} ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_RELEASE} ${repose_march} ${REPOSE_VECTOR_512} ${REPOSE_SANITIZE} ${REPOSE_UNITY} ${repose_compiler_macros} ${repose_libraries}"
           -P ${PROJECT_SOURCE_DIR}/cmake/WriteVersion.cmake
   BYPRODUCTS ${PROJECT_BINARY_DIR}/generated/repose_version.hpp
   COMMENT "Version" VERBATIM)

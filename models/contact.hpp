@@ -14,8 +14,8 @@ namespace repose {
 template <class T, int N>
 T work_over_gap(const T& rho_0, const Sym<T, N>& stress, const T& p, const Increment<T, N>& inc) {
   const T strain_v = trace(inc.strain);
-  // how far ρ lies beyond ρ_0, and ρ_n = ρ e^{tr Δε}, as extensions; most steps cross nothing, which
-  // no division is needed to see
+  // how far ρ lies beyond ρ_0, and ρ_n = ρ e^{tr Δε}, as extensions; most steps cross nothing,
+  // which no division is needed to see
   const T gap = T(2.0) * (rho_0 - inc.density);
   const T sum = rho_0 + inc.density;
   const auto crosses = gap * (gap - strain_v * sum) < T(0.0);

@@ -67,8 +67,8 @@ struct LinearisedCamClay : ModifiedCamClay<Compression::ln_v_ln_p> {
       p_c = p_cn / (one - z / hardening);
       D = one + slope_D * multiplier;
     }
-    const auto defined =
-        negated(was_lost || active) && finite(p) && finite(p_c) && finite(D) && p > zero && p_c > zero;
+    const auto defined = negated(was_lost || active) && finite(p) && finite(p_c) && finite(D) &&
+                         p > zero && p_c > zero;
     const Sym<T, N> next = (one / D) * s_trial - Sym<T, N>::isotropic(p - P.p_shift);
     for (int i = 0; i < N; ++i) stress[i] = select(defined, next[i], zero);
     at[i_p_c] = select(defined, p_c, at[i_p_c]);

@@ -30,22 +30,6 @@ struct CamClayReturn {
     T H, slope, scale;  ///< residual, dH/dw, and what H is small against
     T x, g, h, f, D;    ///< as above; q = q_tr w/D
     T f_x, D_w;         ///< df/dx, dD/dw
-
-    /// The point at w + move by its Taylor series; the error is of second order in f and D, of third
-    /// in g and h.
-    Point moved(const CamClayReturn& eq, const T& move) const {
-      const T one(1.0), half(0.5);
-      const T y_move = eq.L * move;
-      const T x_move = (one - eq.a) * y_move;
-      Point r = *this;
-      r.w = w + move;
-      r.x = x + x_move;
-      r.g = g * (one - x_move * (one - half * x_move));
-      r.h = h * (one - y_move * (one - half * y_move));
-      r.f = f + f_x * x_move;
-      r.D = D + D_w * move;
-      return r;
-    }
   };
 
   [[gnu::always_inline]] Point at(const T& w) const {
@@ -98,6 +82,23 @@ struct CamClayReturn {
     return r;
   }
 
+  /// A point at w + move by its Taylor series; the error is of second order in f and D, of third in
+  /// g and h, of second in H.
+  [[gnu::always_inline]] Point moved(const Point& from, const T& move) const {
+    const T one(1.0), half(0.5);
+    const T y_move = L * move;
+    const T x_move = (one - a) * y_move;
+    Point r = from;
+    r.w = from.w + move;
+    r.H = from.H + from.slope * move;
+    r.x = from.x + x_move;
+    r.g = from.g * (one - x_move * (one - half * x_move));
+    r.h = from.h * (one - y_move * (one - half * y_move));
+    r.f = from.f + from.f_x * x_move;
+    r.D = from.D + from.D_w * move;
+    return r;
+  }
+
   /// Where the bracket of w ends: at the trial state, or where p = p_c (y = ln 2) if that comes
   /// first. On the dry side it ends at y = −200 at the latest, where p is p_c e^{-200}/2, below any
   /// p_sep: no sign change is then needed, the point parts.
@@ -140,6 +141,7 @@ typename R::Point bracketed_root(const R& eq, const typename R::Point& first, co
   T w = w_before - H_before * k_before;
   w = select(w > low && w < high, w, upper);
   T last_move = upper;
+  T rest(0.0);
   for (int step = 0;; ++step) {
     const typename R::Point here = eq.at(w);
     if (evaluations != nullptr) ++*evaluations;
@@ -167,14 +169,15 @@ typename R::Point bracketed_root(const R& eq, const typename R::Point& first, co
     const T abs_H = select(above, here.H, T(-here.H));
     const T abs_move = select(next > w, last_move, T(-last_move));
     active = active && !(abs_H <= eps * here.scale || abs_move <= eps * w);
+    // or a last step, which is kept for the end: what a lane becomes is its own business
     const auto last = active && trusted && abs_move <= T(1e-9) * w && next == candidate;
+    rest = select(last, last_move, rest);
     active = active && !last;
-    if (!any(active) || step == max_steps)
-      return here.moved(eq, select(last, last_move, T(0.0)));
+    if (!any(active) || step == max_steps) return eq.moved(here, rest);
     w_before = select(active, w, w_before);
     H_before = select(active, here.H, H_before);
     k_before = select(active, k, k_before);
-    w = select(active || last, next, w);
+    w = select(active, next, w);
   }
 }
 

@@ -63,12 +63,11 @@ struct MuIBarkerGray : mu_i::Viscous<MuIBarkerGray> {
 
   template <class T>
   static T friction(const Params<T>& P, const T& I) {
-    using std::log;
     using std::sqrt;
     const auto low = I < P.I_1;
     // ln(A/I) = ln(I_1/I) + α/μ(I_1)²
     const T below = select(low, I, P.I_1);
-    const T ln_ratio = log(T(P.I_1 / below)) + P.alpha / square(high_branch(P, P.I_1));
+    const T ln_ratio = ln(T(P.I_1 / below)) + P.alpha / square(high_branch(P, P.I_1));
     return select(low, T(sqrt(T(P.alpha / ln_ratio))), high_branch(P, I));
   }
 

@@ -92,7 +92,8 @@ struct NeoHookean {
   static T modulus(const Params<T>& P, const Sym<T, N>& stress, const State<T>&, const T& density) {
     const T J = P.rho_0 / density;
     const T most = mean(stress) + T(2.0 / std::sqrt(3.0)) * shear_norm(deviator(stress));
-    const T M = (P.lambda * (T(1.0) - T(2.0) * ln(J)) + T(2.0) * P.mu) / J + most;
+    // μ + μ: of two products the compiler might fuse either with the sum
+    const T M = (P.lambda * (T(1.0) - T(2.0) * ln(J)) + (P.mu + P.mu)) / J + most;
     const T shear = P.mu / J;  // far enough stretched, it yields along n: no wave, but still stiff
     return select(M > shear, M, shear);
   }

@@ -97,8 +97,8 @@ Dual<n> select(bool mask, const Dual<n>& a, const Dual<n>& b) {
   return mask ? a : b;
 }
 
-/// What `!` says of a mask. (xsimd 10 makes `!` of an AVX2 mask by comparing its halves as integers: ten
-/// instructions for one.)
+/// What `!` says of a mask. (xsimd 10 makes `!` of an AVX2 mask by comparing its halves as
+/// integers: ten instructions for one.)
 inline bool negated(bool mask) { return !mask; }
 inline Mask<Pack> negated(const Mask<Pack>& mask) { return ~mask; }
 inline Mask<Twin> negated(const Mask<Twin>& mask) { return !mask; }
@@ -141,8 +141,9 @@ inline Twin power_of_two(const Twin& shifted) {
   return {power_of_two(shifted.a), power_of_two(shifted.b)};
 }
 
-/// ln x to 2 units in the last place (log of a Pack turns its exponents into doubles one by one where
-/// there is no AVX-512): x = 2^k m with √½ <= m < √2, and with s = (m − 1)/(m + 1), |s| <= 0.1716,
+/// ln x to 2 units in the last place (log of a Pack turns its exponents into doubles one by one
+/// where there is no AVX-512): x = 2^k m with √½ <= m < √2, and with s = (m − 1)/(m + 1), |s| <=
+/// 0.1716,
 ///   ln m = 2(s + s³/3 + … + s²¹/21), whose next term is 2e-19 of it.
 /// NaN below 0, −∞ at 0, ∞ at ∞.
 inline Pack ln(const Pack& x) {
@@ -163,14 +164,16 @@ inline Pack ln(const Pack& x) {
   const Pack s2 = s * s;
   const Pack s4 = s2 * s2;
   const auto term = [](int n) { return Pack(2.0 / (2.0 * n + 1.0)); };
-  const Pack even = term(2) + s4 * (term(4) + s4 * (term(6) + s4 * (term(8) + s4 * term(10))));
-  const Pack odd = term(1) + s4 * (term(3) + s4 * (term(5) + s4 * (term(7) + s4 * term(9))));
-  // 2s = f − s f: the leading part without the rounding of s
-  const Pack tail = s2 * (odd + s2 * even);
+  // every multiply-add is said: what the compiler would fuse depends on what stands beside it
+  using xsimd::fma, xsimd::fnma;
+  const Pack even =
+      fma(s4, fma(s4, fma(s4, fma(s4, term(10), term(8)), term(6)), term(4)), term(2));
+  const Pack odd = fma(s4, fma(s4, fma(s4, fma(s4, term(9), term(7)), term(5)), term(3)), term(1));
+  // ln m = f − s(f − s²(2/3 + 2s²/5 + …)), as 2s = f − s f: its leading part has no rounding of s
+  const Pack ln_m = fnma(s, fnma(s2, fma(s2, even, odd), f), f);
   constexpr double ln_2_high = 6.93147180369123816490e-01;  // 33 bits: k ln_2_high is exact
   constexpr double ln_2_low = 1.90821492927058770002e-10;
-  const Pack ln_m = f - s * (f - tail);
-  const Pack result = k * Pack(ln_2_high) + (ln_m + k * Pack(ln_2_low));
+  const Pack result = fma(k, Pack(ln_2_high), fma(k, Pack(ln_2_low), ln_m));
   const Pack infinity(std::numeric_limits<double>::infinity());
   const Pack edge = select(x == Pack(0.0), Pack(-infinity),
                            select(x == infinity, infinity, Pack(infinity - infinity)));

@@ -4,8 +4,9 @@
 #include "mpm/grid/unrolled.hpp"
 #if defined(__AVX512F__)
 #include "mpm/step/plane_sums.hpp"
-#endif
+#else
 #include "mpm/step/row_sums.hpp"
+#endif
 
 namespace repose::mpm {
 
@@ -14,10 +15,10 @@ void points_to_tile(const PointsOf<dim>& points, const SlotRange& range, double 
                     const std::array<int, Shape<dim>::axes>& origin, const double* elastic,
                     TileOf<dim>& tile) {
 #if defined(__AVX512F__)
-  if constexpr (dim == 2)
-    return add_plane_sums<Kernel, affine, averages>(points, range, h, origin, elastic, tile);
-#endif
+  add_plane_sums<Kernel, affine, averages>(points, range, h, origin, elastic, tile);
+#else
   add_row_sums<Kernel, affine, averages>(points, range, h, origin, elastic, tile);
+#endif
 }
 
 template <class Kernel, Keeps keeps, bool averages, int dim>

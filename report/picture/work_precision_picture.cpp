@@ -140,7 +140,7 @@ Figure flow_figure(std::span<const study::SweepRun> runs, const study::SweepRefe
       style.colour = cycle_colour(colour++);
       history.line(fmt::format("h = {:.4g} mm", 1e3 * run->scene().h),
                    run->series.find("time_s")->second,
-                   run->series.find(study::column_of(q))->second, style);
+                   run->series.find(study::column_of(q, run->scene().dimensions()))->second, style);
     }
     const study::QuantityCurve exact = study::curve_of(value->value, q, runs.front().scene(), bin);
     history.dashed("exact", exact.x, exact.y, {Colour::black, 1.2});

@@ -114,16 +114,16 @@ std::string exam_tables(std::span<const Graded> answers) {
 }
 
 std::string line_of(const Graded& answer) {
-  const Json bar = std::isfinite(answer.bar) ? Json(answer.bar) : Json();
+  const auto finite_or_null = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
   return Json{{"scene", answer.scene},
               {"shipped", answer.shipped},
               {"quantity", answer.quantity},
               {"target", answer.target},
               {"promised", answer.promised},
               {"basis", answer.basis},
-              {"bar", bar},
+              {"bar", finite_or_null(answer.bar)},
               {"error", answer.error},
-              {"reference_bar", answer.reference_bar},
+              {"reference_bar", finite_or_null(answer.reference_bar)},
               {"cpu_s", answer.cpu_s},
               {"finest_h_m", answer.finest_h}}
       .dump();
@@ -139,9 +139,12 @@ Graded graded_of(std::string_view line) {
     a.target = j.at("target").get<double>();
     a.promised = j.at("promised").get<bool>();
     a.basis = j.at("basis").get<std::string>();
-    a.bar = j.at("bar").is_null() ? HUGE_VAL : j.at("bar").get<double>();
+    const auto finite_or_infinite = [&](const char* key) {
+      return j.at(key).is_null() ? HUGE_VAL : j.at(key).get<double>();
+    };
+    a.bar = finite_or_infinite("bar");
     a.error = j.at("error").get<double>();
-    a.reference_bar = j.at("reference_bar").get<double>();
+    a.reference_bar = finite_or_infinite("reference_bar");
     a.cpu_s = j.at("cpu_s").get<double>();
     a.finest_h = j.at("finest_h_m").get<double>();
     return a;

@@ -34,7 +34,8 @@ class Volume {
 
 }  // namespace
 
-std::string_view column_of(Quantity q) {
+std::string_view column_of(Quantity q, std::size_t dimensions) {
+  if (q == Quantity::kinetic && dimensions == 3) return "kinetic_J";
   constexpr std::array<std::string_view, quantity_count> columns{
       "front_m", "front_99_m", "height_m", "depth_m", "kinetic_J_per_m", "momentum_x"};
   return columns[static_cast<std::size_t>(q)];
@@ -56,7 +57,7 @@ VectorXd shares_of(const SweepRun& run, Quantity q, double bin) {
                   volume.left_of(static_cast<double>(i) * bin);
     return shares;
   }
-  const auto column = run.series.find(column_of(q));
+  const auto column = run.series.find(column_of(q, run.scene().dimensions()));
   if (column == run.series.end()) return VectorXd::Constant(1, std::nan(""));
   const std::vector<double>& rows = column->second;
   return run.scene().series_interval *

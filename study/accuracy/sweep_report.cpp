@@ -218,8 +218,8 @@ std::string errors_csv(std::span<const SweepRun> runs, const SweepReference& ref
 std::string curve_csv(const Eigen::VectorXd& shares, Quantity q, const mpm::Scene& scene,
                       double bin) {
   const QuantityCurve curve = curve_of(shares, q, scene, bin);
-  std::string text =
-      fmt::format("{},{}\n", q == Quantity::profile ? "x_m" : "time_s", column_of(q));
+  std::string text = fmt::format("{},{}\n", q == Quantity::profile ? "x_m" : "time_s",
+                                 column_of(q, scene.dimensions()));
   for (std::size_t i = 0; i < curve.x.size(); ++i)
     text += fmt::format("{:.10g},{:.10g}\n", curve.x[i], curve.y[i]);
   return text;

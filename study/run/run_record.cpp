@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "io/json.hpp"
+#include "models/instruction_set.hpp"
 #include "repose_version.hpp"
 
 namespace repose::study {
@@ -188,6 +189,7 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   Json s;
   const auto put = [&](const char* name, double x) { s[named(name, record.dimensions)] = x; };
   s["repose"] = version_string;
+  s["instruction_set"] = instruction_set();
   s["status"] = facts.status;
   if (!facts.reason.empty()) s["reason"] = facts.reason;
   s["name"] = simulation.scene().name;

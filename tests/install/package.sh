@@ -20,7 +20,7 @@ started=$SECONDS
 took() { echo "[ measured ] $1: $((SECONDS - started)) s"; started=$SECONDS; }
 
 "$CMAKE" -S "$source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DREPOSE_NATIVE=OFF \
-  -DREPOSE_TESTS=OFF > "$work.configure.log"
+  -DREPOSE_MORE_SETS=x86-64-v4 -DREPOSE_TESTS=OFF > "$work.configure.log"
 "$CMAKE" --build "$work/build" > "$work.build.log" || { tail -30 "$work.build.log" >&2; exit 1; }
 took "building without the tests"
 rm -f "$work"/build/*.deb
@@ -30,7 +30,8 @@ deb=$(ls "$work"/build/*.deb)
 took "packing"
 dpkg-deb -f "$deb" Package Version Depends
 dpkg-deb -c "$deb" | awk '{ print $6 }' > "$work.contents.txt"
-for file in ./usr/bin/repose ./usr/lib/librepose_mpm.so ./usr/include/repose/models/law.hpp \
+for file in ./usr/bin/repose ./usr/lib/repose/x86-64-v4/repose ./usr/lib/librepose_mpm.so \
+  ./usr/lib/glibc-hwcaps/x86-64-v4/librepose_mpm.so ./usr/include/repose/models/law.hpp \
   ./usr/lib/cmake/repose/reposeConfig.cmake ./usr/share/doc/repose/copyright; do
   grep -qx -- "$file" "$work.contents.txt" || { echo "the package lacks $file" >&2; exit 1; }
 done
@@ -52,6 +53,13 @@ in_root repose --version
 in_root repose point /usr/share/repose/experiments/weald_clay_undrained.toml -o /tmp/weald_clay
 [[ -s $root/tmp/weald_clay/curve.csv ]]
 took "a shipped test"
+# the same collapse by every instruction set that this machine has
+for set in avx2 avx512; do
+  grep -qw avx512vl /proc/cpuinfo || [[ $set != avx512 ]] || continue
+  in_root repose --instruction-set $set run flat_mu_i --set scene.end_time=0.01 --no-plot --quiet -o /tmp/$set
+  grep -q "\"instruction_set\": \"$set\"" "$root/tmp/$set/summary.json"
+  took "a collapse by $set"
+done
 
 mkdir "$root/own"
 cp "$source/examples/own_law.cpp" "$root/own/"

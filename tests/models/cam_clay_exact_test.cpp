@@ -197,6 +197,7 @@ struct Counted {
     ++evaluations;
     return equation.at(w);
   }
+  Point moved(const Point& from, double move) const { return equation.moved(from, move); }
 };
 
 TYPED_TEST(CamClayExact, TheRootIsFoundInFewEvaluations) {
@@ -218,8 +219,16 @@ TYPED_TEST(CamClayExact, TheRootIsFoundInFewEvaluations) {
       const auto root = bracketed_root(counted, trial, counted.equation.bracket_end(), active);
       EXPECT_FALSE(active);
       // a root to the round-off of its terms, y = Lw to 4|L|ε
-      EXPECT_LT(std::abs(root.H),
-                epsilon * root.scale * (32.0 + 16.0 * std::abs(counted.equation.L)));
+      const auto there = counted.equation.at(root.w);
+      EXPECT_LT(std::abs(there.H),
+                epsilon * there.scale * (32.0 + 16.0 * std::abs(counted.equation.L)));
+      // The last step is a Taylor series of less than 1e-9: what it carries is what the equation
+      // says, to the round-off of x and y, which are sums of terms of the size of L.
+      const double sums = std::abs(counted.equation.L) + std::abs(counted.equation.ln_ratio);
+      for (const auto part : {&CamClayReturn<double>::Point::g, &CamClayReturn<double>::Point::h,
+                              &CamClayReturn<double>::Point::f, &CamClayReturn<double>::Point::D})
+        EXPECT_NEAR(root.*part, there.*part,
+                    epsilon * (32.0 + 16.0 * sums) * std::abs(there.*part));
       EXPECT_GT(root.w, 0.0);
       EXPECT_LE(root.w, counted.equation.bracket_end());
       ++all;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mpm/step/row_sums.hpp"
 #include "mpm/step/transfer.hpp"
 
 namespace repose::mpm {
@@ -178,6 +179,17 @@ TYPED_TEST(SpaceTransferTest, EveryTileEntryIsTheBruteForceSum) {
   }
   for (std::size_t n = 0; n < found.size(); ++n)
     EXPECT_TRUE(found[n] || (*tile)[C::mass][n] == 0.0) << "out of reach";
+}
+
+TYPED_TEST(SpaceTransferTest, TheWayByRowsGivesTheSame) {
+  const PointsOf<3> points = points_near_block(0.999);
+  const auto tile = this->scattered(points);
+  auto by_rows = std::make_unique<TileOf<3>>();
+  for (auto& channel : *by_rows) channel.fill(0.0);
+  add_row_sums<TypeParam, true, false>(points, {0, points.count}, h, origin, nullptr, *by_rows);
+  for (std::size_t c = 0; c < C::extra; ++c)
+    for (std::size_t n = 0; n < S::tile_nodes; ++n)
+      EXPECT_NEAR((*by_rows)[c][n], (*tile)[c][n], round_off) << c << " " << n;
 }
 
 TYPED_TEST(SpaceTransferTest, ConservesMassMomentumAndAngularMomentum) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "mpm/grid/point_stencil.hpp"
+#include "mpm/step/row_sums.hpp"
 #include "tests/mpm/point_cloud.hpp"
 
 namespace repose::mpm {
@@ -89,6 +91,40 @@ TYPED_TEST(TransferTest, EveryTileEntryIsTheBruteForceSum) {
   }
   for (const auto& [place, node] : grid.nodes)
     EXPECT_LT(node.m, round_off) << "outside the tile: " << place.first << ", " << place.second;
+}
+
+// The way by rows is that of AVX2; here it is held against the other one wherever that is taken.
+TYPED_TEST(TransferTest, TheWayByRowsGivesTheSame) {
+  const PointSet points = this->points_near_block(0.999);
+  const Tile tile = this->scattered(points);
+  Tile by_rows;
+  for (auto& channel : by_rows) channel.fill(0.0);
+  add_row_sums<TypeParam, true, false>(points, {0, points.count}, h, origin, nullptr, by_rows);
+  for (std::size_t c = 0; c < T_EXTRA; ++c)
+    for (std::size_t n = 0; n < tile_nodes; ++n)
+      EXPECT_NEAR(by_rows[c][n], tile[c][n], round_off) << c << " " << n;
+
+  const auto pack = [&](std::size_t f, std::size_t s, int first) {
+    return Pack(Pack::load_aligned(points.data(f) + s) * Pack(1.0 / h) - Pack(first));
+  };
+  for (std::size_t s = 0; s < points.count; s += Pack::size) {
+    const std::array<Pack, 2> xi{pack(X, s, origin[0]), pack(Y, s, origin[1])};
+    std::array<Moments, 2> expected, found;
+    std::array<Pack, 1> value, value_found;
+    const std::array fields{tile[T_PX].data(), tile[T_FY].data()};
+    const std::array<const double*, 1> another{tile[T_MASS].data()};
+    PointStencil<TypeParam, 2>(xi).read(fields, expected, another, value);
+    RowStencil<TypeParam, 2>(xi).read(fields, found, another, value_found);
+    const auto near = [](const Pack& x, const Pack& y) {
+      for (std::size_t k = 0; k < Pack::size; ++k) EXPECT_NEAR(x.get(k), y.get(k), round_off);
+    };
+    for (std::size_t f = 0; f < 2; ++f) {
+      near(found[f].value, expected[f].value);
+      near(found[f].dx, expected[f].dx);
+      near(found[f].dy, expected[f].dy);
+    }
+    near(value_found[0], value[0]);
+  }
 }
 
 TYPED_TEST(TransferTest, ConservesMassMomentumAndAngularMomentum) {
