@@ -39,7 +39,7 @@ struct Shape {
     if constexpr (dim == 2)
       return std::array{8, 8};
     else
-      return std::array{8, 8, 4};
+      return std::array{8, 4, 4};
   }();
   static constexpr std::array<int, axes> margin = [] {
     std::array<int, axes> nodes{};

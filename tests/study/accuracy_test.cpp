@@ -310,5 +310,12 @@ TEST(SweepErrors, ProfilesOfDifferentCellsHaveTheSameVolumes) {
   EXPECT_NEAR(curve.y[0], 0.875, 1e-15);
 }
 
+TEST(Quantities, TheEnergyOfASceneInSpaceIsNotPerMetre) {
+  EXPECT_EQ(column_of(Quantity::kinetic), "kinetic_J_per_m");
+  EXPECT_EQ(column_of(Quantity::kinetic, 3), "kinetic_J");
+  for (const Quantity q : {Quantity::front, Quantity::front_99, Quantity::height, Quantity::profile})
+    EXPECT_EQ(column_of(q, 3), column_of(q));
+}
+
 }  // namespace
 }  // namespace repose::study
