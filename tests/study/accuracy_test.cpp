@@ -313,7 +313,8 @@ TEST(SweepErrors, ProfilesOfDifferentCellsHaveTheSameVolumes) {
 TEST(Quantities, TheEnergyOfASceneInSpaceIsNotPerMetre) {
   EXPECT_EQ(column_of(Quantity::kinetic), "kinetic_J_per_m");
   EXPECT_EQ(column_of(Quantity::kinetic, 3), "kinetic_J");
-  for (const Quantity q : {Quantity::front, Quantity::front_99, Quantity::height, Quantity::profile})
+  for (const Quantity q :
+       {Quantity::front, Quantity::front_99, Quantity::height, Quantity::profile})
     EXPECT_EQ(column_of(q, 3), column_of(q));
 }
 
