@@ -7,6 +7,7 @@
 #include "io/interrupt.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
+#include "models/instruction_set.hpp"
 #include "report/picture/fit_chart_picture.hpp"
 #include "repose_version.hpp"
 #include "study/chart/fit_chart.hpp"
@@ -82,10 +83,15 @@ ChartEnd chart_fit(const CommonOptions& options, const std::string& file, bool q
   if (!options.no_plot)
     drawn(report::fit_chart_figure(runs, task.name, first), folder.file("chart.svg"));
   const std::string status = interrupt.requested() ? "interrupted" : "done";
-  io::Json summary{{"repose", version_string}, {"kind", "chart_fit"},
-                   {"status", status},         {"task", task.name},
-                   {"seed", settings.seed},    {"evaluations", settings.max_evaluations},
-                   {"first_objective", first}, {"algorithms", runs.size()}};
+  io::Json summary{{"repose", version_string},
+                   {"instruction_set", std::string(instruction_set())},
+                   {"kind", "chart_fit"},
+                   {"status", status},
+                   {"task", task.name},
+                   {"seed", settings.seed},
+                   {"evaluations", settings.max_evaluations},
+                   {"first_objective", first},
+                   {"algorithms", runs.size()}};
   folder.write_file("summary.json", summary.dump(2) + "\n");
   folder.seal();
   if (options.json) fmt::print("{}\n", summary.dump());

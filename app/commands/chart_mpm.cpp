@@ -9,6 +9,7 @@
 #include "io/interrupt.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
+#include "models/instruction_set.hpp"
 #include "report/picture/sweep_picture.hpp"
 #include "repose_version.hpp"
 #include "study/accuracy/exact_flow.hpp"
@@ -191,6 +192,7 @@ class MpmChart {
                      const Json& answer, const Json& errors, const study::Usage& before) const {
     const study::Usage after = study::usage();
     Json summary{{"repose", version_string},
+                 {"instruction_set", std::string(instruction_set())},
                  {"kind", "chart_mpm"},
                  {"status", status},
                  {"name", scene_.scene.name},

@@ -9,6 +9,7 @@
 #include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/result_folder.hpp"
+#include "models/instruction_set.hpp"
 #include "report/picture/fit_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
@@ -149,6 +150,7 @@ class FitRun {
     const study::Usage after = study::usage();
     Json s;
     s["repose"] = version_string;
+    s["instruction_set"] = instruction_set();
     s["kind"] = "fit";
     s["name"] = file_.name;
     s["status"] = status;

@@ -10,6 +10,7 @@
 #include "input/shipped_input.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
+#include "models/instruction_set.hpp"
 #include "report/picture/point_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
@@ -125,6 +126,7 @@ class PointRun {
     const point::Outcome& o = result_.curve.outcome;
     Json s;
     s["repose"] = version_string;
+    s["instruction_set"] = instruction_set();
     s["kind"] = "point_test";
     s["name"] = file_.name;
     s["status"] = result_.failed() ? "failed" : "done";

@@ -11,6 +11,7 @@
 #include "input/resolved_scene.hpp"
 #include "input/shipped_input.hpp"
 #include "io/json.hpp"
+#include "models/instruction_set.hpp"
 #include "report/picture/parameter_sweep_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
@@ -125,6 +126,7 @@ class SweepFolder {
                       refused = sweep.count("refused"), runs = sweep.cases().size();
     const study::Usage after = study::usage();
     Json summary{{"repose", version_string},
+                 {"instruction_set", std::string(instruction_set())},
                  {"kind", "sweep"},
                  {"name", name_},
                  {"status", interrupted ? "interrupted" : "done"},

@@ -7,6 +7,7 @@
 
 #include "io/interrupt.hpp"
 #include "io/json.hpp"
+#include "models/instruction_set.hpp"
 #include "mpm/study/estimate.hpp"
 #include "repose_version.hpp"
 #include "study/accuracy/sweep_report.hpp"
@@ -244,6 +245,7 @@ Json AccurateRun::summary(const std::string& status, std::uint64_t seed) const {
                       {"status", run.status()},
                       {"cpu_s", run.figure("cpu_s")}});
   return {{"repose", version_string},
+          {"instruction_set", std::string(instruction_set())},
           {"kind", "accuracy"},
           {"status", status},
           {"name", scene_.name},

@@ -10,6 +10,7 @@
 #include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/result_folder.hpp"
+#include "models/instruction_set.hpp"
 #include "repose_version.hpp"
 
 namespace repose::study {
@@ -151,6 +152,7 @@ Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
   const Optimum& best = result.best();
   Json j;
   j["repose"] = version_string;
+  j["instruction_set"] = instruction_set();
   j["kind"] = "fit";
   j["name"] = file.name;
   j["status"] = status;
