@@ -146,7 +146,7 @@ class AccuracyCommand {
     if (!study::is_curve(request_.quantity))
       figure =
           fmt::format(", {} {:.4f} {}", quantity(), run.figure(study::column_of(request_.quantity)),
-                      study::unit_of(request_.quantity));
+                      study::unit_of(request_.quantity, scene().dimensions()));
     say(fmt::format("  h {:.4g} mm, courant {:.3g}{}, {:.2g} s of CPU\n", 1e3 * run.scene().h,
                     run.scene().courant, figure, run.figure("cpu_s")));
     event({{"event", "run"},
@@ -243,7 +243,7 @@ class AccuracyCommand {
                           bar_text(estimate.error))
             : fmt::format("{} = {:.4g} ± {:.2g} {} ({})", quantity(), estimate.value[0],
                           estimate.error * std::abs(estimate.value[0]),
-                          study::unit_of(request_.quantity), bar_text(estimate.error));
+                          study::unit_of(request_.quantity, scene().dimensions()), bar_text(estimate.error));
     say(fmt::format(
         "  {}; {}\n{}"
         "  from all runs; cells of {:.4g} mm alone are about {} off\n"

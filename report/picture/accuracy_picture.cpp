@@ -20,7 +20,9 @@ Figure accuracy_picture(const std::vector<study::SweepRun>& runs, study::Quantit
   if (study::is_curve(q)) {
     const mpm::Scene& scene = runs.back().scene();
     axes.x.label = q == study::Quantity::profile ? "x (m)" : "time (s)";
-    axes.y.label = q == study::Quantity::profile ? "solid depth (m)" : "kinetic energy (J/m)";
+    axes.y.label = q == study::Quantity::profile
+                       ? "solid depth (m)"
+                       : fmt::format("kinetic energy ({})", study::unit_of(q, scene.dimensions()));
     axes.legend = Legend::top_right;
     for (const auto& level : levels) {
       const study::QuantityCurve curve = study::curve_of(level.mean(), q, scene, bin);
@@ -32,7 +34,7 @@ Figure accuracy_picture(const std::vector<study::SweepRun>& runs, study::Quantit
   }
   axes.x = {"cell size (mm)", AxisScale::linear, 0.0, 1.08e3 * levels.front().h};
   axes.x.lower = -0.04e3 * levels.front().h;
-  axes.y.label = fmt::format("{} ({})", study::name_of(q), study::unit_of(q));
+  axes.y.label = fmt::format("{} ({})", study::name_of(q), study::unit_of(q, runs.back().scene().dimensions()));
   std::vector<double> h, value, mean_h, mean;
   for (const study::SweepRun& run : runs) {
     h.push_back(1e3 * run.scene().h);

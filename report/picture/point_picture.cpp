@@ -74,7 +74,7 @@ class Source {
   std::string strain_label(std::string_view symbol) const {
     return fmt::format("{} ({}, %)", symbol, point::name_of(test_.path.measure));
   }
-  bool has_p_c() const { return point::state_index(law_.state, "p_c") >= 0; }
+  bool has_p_c() const { return point::variable_index(law_, "p_c") >= 0; }
   const LawInfo& law() const { return law_; }
 
  private:

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "study/accuracy/quantity.hpp"
+
 namespace repose::report {
 namespace {
 
@@ -70,6 +72,11 @@ std::vector<Column> columns_of(const std::vector<study::SweepSeries>& series) {
         .series.push_back(&s);
   }
   return columns;
+}
+
+std::string_view energy_unit(const std::vector<study::SweepSeries>& series) {
+  return study::unit_of(study::Quantity::kinetic,
+                        series.empty() ? 2 : series.front().scene().dimensions());
 }
 
 /// The range of a figure over all runs, so that panels side by side share their axis.
@@ -155,11 +162,12 @@ Figure step_figure(const std::vector<study::SweepSeries>& series, const std::str
         if (const auto c = study::change_between(run, *s.finest())) return 100.0 * c->profile_max;
     return std::nan("");
   };
+  const std::string_view energy = energy_unit(series);
   std::vector<Row> rows{{step, {"front at the end (m)"}, dt, named("front_m")},
                         {step, {"front of 99 % of the mass (m)"}, dt, named("front_99_m")},
                         {step, {"height at the wall (m)"}, dt, named("height_m")},
                         {step,
-                         {"kinetic energy at the end (J/m)", AxisScale::logarithmic},
+                         {fmt::format("kinetic energy at the end ({})", energy), AxisScale::logarithmic},
                          dt,
                          named("kinetic_J_per_m")},
                         {{"CPU time (s)", AxisScale::logarithmic},
@@ -203,14 +211,15 @@ Figure history_figure(const std::vector<study::SweepSeries>& series, const std::
   const std::array<std::pair<const char*, Axis>, 3> rows{
       std::pair{"front_m", Axis{"front (m)"}},
       {"front_99_m", Axis{"front of 99 % of the mass (m)"}},
-      {"kinetic_J_per_m", Axis{"kinetic energy (J/m)", AxisScale::logarithmic}}};
+      {"kinetic_J_per_m",
+       Axis{fmt::format("kinetic energy ({})", energy_unit(series)), AxisScale::logarithmic}}};
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto& [key, axis] = rows[r];
     std::vector<double> all;
     for (const Column& column : columns)
       for (const study::SweepSeries* s : column.series)
         for (const study::SweepRun* run : s->done_runs()) {
-          const std::vector<double>& y = run->series.find(key)->second;
+          const std::vector<double>& y = run->column(key);
           all.insert(all.end(), y.begin() + 1, y.end());  // the first row is rest
         }
     for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -224,8 +233,7 @@ Figure history_figure(const std::vector<study::SweepSeries>& series, const std::
         const std::vector<const study::SweepRun*> runs = s->done_runs();
         const Style plain = without_marker(style(*s));
         const auto curve = [&](const study::SweepRun& run, const char* column) {
-          const std::vector<double>& values = run.series.find(column)->second;
-          return std::span(values).subspan(1);
+          return std::span(run.column(column)).subspan(1);
         };
         axes.line(s->name(), curve(*runs.back(), "time_s"), curve(*runs.back(), key), plain);
         if (runs.size() > 1)

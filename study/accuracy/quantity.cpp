@@ -41,9 +41,11 @@ std::string_view column_of(Quantity q, std::size_t dimensions) {
   return columns[static_cast<std::size_t>(q)];
 }
 
-std::string_view unit_of(Quantity q) {
-  if (q == Quantity::momentum) return "kg/s";  // kg m/s per m
-  return q == Quantity::kinetic ? "J/m" : "m";
+std::string_view unit_of(Quantity q, std::size_t dimensions) {
+  const bool in_space = dimensions == 3;
+  if (q == Quantity::momentum) return in_space ? "kg m/s" : "kg/s";  // kg m/s per m
+  if (q == Quantity::kinetic) return in_space ? "J" : "J/m";
+  return "m";
 }
 
 VectorXd shares_of(const SweepRun& run, Quantity q, double bin) {

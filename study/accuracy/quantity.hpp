@@ -34,7 +34,7 @@ constexpr std::string_view name_of(Quantity q) {
 constexpr bool is_curve(Quantity q) { return q >= Quantity::profile; }
 /// "front_m", "m": the figure of summary.json that a number is, and its unit; a curve's column.
 std::string_view column_of(Quantity q, std::size_t dimensions = 2);
-std::string_view unit_of(Quantity q);
+std::string_view unit_of(Quantity q, std::size_t dimensions);
 
 /// A run's quantity as shares (study/accuracy/richardson.hpp), comparable between runs of one scene
 /// with any cells: a number as it is; a profile as the volumes [m³ per m] of columns of width `bin`

@@ -101,8 +101,14 @@ input::Sweep with_defaults(input::Sweep sweep, const mpm::Scene& scene, bool qui
 }
 
 double SweepRun::figure(std::string_view key) const {
-  const auto found = summary.figures.find(key);
+  const auto found = summary.figures.find(named(key, scene().dimensions()));
   return found != summary.figures.end() ? found->second : std::nan("");
+}
+
+const std::vector<double>& SweepRun::column(std::string_view key) const {
+  static const std::vector<double> none;
+  const auto found = series.find(named(key, scene().dimensions()));
+  return found != series.end() ? found->second : none;
 }
 
 SweepRun run_of(const input::SceneFile& base, mpm::Scene scene) {

@@ -48,8 +48,10 @@ struct SweepRun {
   /// "" as long as there is no result.
   const std::string& status() const { return summary.status; }
   bool done() const { return status() == "done"; }
-  /// A number of summary.json; NaN where there is none.
+  /// A number of summary.json, under its name in the plane (named()); NaN where there is none.
   double figure(std::string_view key) const;
+  /// A column of series.csv, likewise; empty where there is none.
+  const std::vector<double>& column(std::string_view key) const;
   /// Mean step [s].
   double mean_dt() const { return figure("time_s") / figure("steps"); }
   double point_steps() const { return figure("point_steps_per_s") * figure("wall_s"); }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "io/json.hpp"
+#include "study/run/run_record.hpp"
 
 namespace repose::study {
 namespace {
@@ -30,6 +31,15 @@ constexpr std::array<std::string_view, 17> copied{"points",
                                                   "energy_error",
                                                   "cpu_s",
                                                   "threads"};
+
+/// Names of the plane as the runs' dimensions have them.
+std::vector<std::string> in_dimensions(std::span<const std::string_view> names,
+                                       std::span<const SweepRun> runs) {
+  const std::size_t dimensions = runs.empty() ? 2 : runs.front().scene().dimensions();
+  std::vector<std::string> all;
+  for (const std::string_view name : names) all.push_back(named(name, dimensions));
+  return all;
+}
 
 /// A cell of a table: empty where there is no number.
 std::string cell(double x) { return std::isfinite(x) ? fmt::format("{:.10g}", x) : ""; }
@@ -82,7 +92,7 @@ std::string sweep_csv(std::span<const SweepRun> runs) {
       "{},status,mean_dt_s,{},point_steps_per_cpu_s,bytes_per_point,front_change,front_99_change,"
       "height_change,"
       "profile_change_mean,profile_change_max\n",
-      key_columns(runs), fmt::join(copied, ","));
+      key_columns(runs), fmt::join(in_dimensions(copied, runs), ","));
   for (const SweepSeries& series : series_of(runs)) {
     const SweepRun* finest = series.finest();
     for (const SweepRun* run : series.runs) {
@@ -111,14 +121,15 @@ std::string history_csv(std::span<const SweepRun> runs) {
                                                      "angular_momentum",
                                                      "transfer_loss_J_per_m",
                                                      "energy_residual_J_per_m"};
-  std::string text = fmt::format("{},{}\n", key_columns(runs), fmt::join(columns, ","));
+  std::string text =
+      fmt::format("{},{}\n", key_columns(runs), fmt::join(in_dimensions(columns, runs), ","));
   for (const SweepRun& run : runs) {
-    const auto time = run.series.find("time_s");
-    if (time == run.series.end()) continue;
-    for (std::size_t i = 0; i < time->second.size(); ++i) {
+    for (std::size_t i = 0; i < run.column("time_s").size(); ++i) {
       text += key_cells(run);
-      for (const std::string_view column : columns)
-        text += "," + cell(run.series.find(column)->second[i]);
+      for (const std::string_view name : columns) {
+        const std::vector<double>& column = run.column(name);
+        text += "," + (i < column.size() ? cell(column[i]) : std::string());
+      }
       text += "\n";
     }
   }
@@ -137,8 +148,8 @@ Json sweep_answer(const std::vector<SweepSeries>& series) {
               {"runs", s.runs.size()},
               {"done", runs.size()}};
     const auto both = [&](std::string_view name, auto&& figure) {
-      line[std::string(name)] = {finite_or_null(figure(*runs.front())),
-                                 finite_or_null(figure(*runs.back()))};
+      line[named(name, s.scene().dimensions())] = {finite_or_null(figure(*runs.front())),
+                                                   finite_or_null(figure(*runs.back()))};
     };
     if (!runs.empty()) {
       both("mean_dt_s", [](const SweepRun& r) { return r.mean_dt(); });
@@ -162,10 +173,12 @@ std::string answer_text(const Json& answer) {
     return fmt::format("{} -> {}", fmt::format(fmt::runtime(format), scale * number(line[key][0])),
                        fmt::format(fmt::runtime(format), scale * number(line[key][1])));
   };
+  const bool in_space = !answer.empty() && answer[0].contains("kinetic_J");
   std::string text =
       fmt::format("{:<22} {:<9} {:>7}  {:<14} {:<16} {:<16} {:<16} {:<18} {:<14} {}\n", "transfer",
                   "kernel", "h (mm)", "step (µs)", "front (m)", "99 % front (m)", "height (m)",
-                  "kinetic (J/m)", "CPU (s)", "step/4: front, 99 %, height, profile");
+                  in_space ? "kinetic (J)" : "kinetic (J/m)", "CPU (s)",
+                  "step/4: front, 99 %, height, profile");
   for (const Json& line : answer) {
     text += fmt::format("{:<22} {:<9} {:>7.4g}  ", line["name"].get<std::string>(),
                         line["kernel"].get<std::string>(), 1e3 * line["h_m"].get<double>());
@@ -176,7 +189,7 @@ std::string answer_text(const Json& answer) {
     text += fmt::format(
         "{:<14} {:<16} {:<16} {:<16} {:<18} {:<14} ", pair(line, "mean_dt_s", 1e6, "{:.4g}"),
         pair(line, "front_m", 1.0, "{:.4f}"), pair(line, "front_99_m", 1.0, "{:.4f}"),
-        pair(line, "height_m", 1.0, "{:.4f}"), pair(line, "kinetic_J_per_m", 1.0, "{:.2g}"),
+        pair(line, "height_m", 1.0, "{:.4f}"), pair(line, in_space ? "kinetic_J" : "kinetic_J_per_m", 1.0, "{:.2g}"),
         pair(line, "cpu_s", 1.0, "{:.2g}"));
     const Json& change = line["change_when_quartered"];
     if (change.is_object())

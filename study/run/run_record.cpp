@@ -38,14 +38,13 @@ Json to_json(const toml::node& node) {
   return {};
 }
 
-/// What the plane has per metre of depth is whole in space: kinetic_J_per_m, kinetic_J.
-std::string named(std::string name, std::size_t dimensions) {
-  const std::string_view per_metre = "_per_m";
-  if (dimensions == 3 && name.ends_with(per_metre)) name.resize(name.size() - per_metre.size());
-  return name;
-}
-
 }  // namespace
+
+std::string named(std::string_view name, std::size_t dimensions) {
+  const std::string_view per_metre = "_per_m";
+  if (dimensions == 3 && name.ends_with(per_metre)) name.remove_suffix(per_metre.size());
+  return std::string(name);
+}
 
 std::vector<std::string> series_columns(std::size_t dimensions) {
   std::vector<std::string> columns{"time_s",

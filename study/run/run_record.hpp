@@ -11,6 +11,10 @@
 
 namespace repose::study {
 
+/// The name of a figure or column of the plane in the scene's dimensions: what the plane has per
+/// metre of depth is whole in space, kinetic_J_per_m and kinetic_J.
+std::string named(std::string_view name, std::size_t dimensions);
+
 /// The columns of series.csv, in order, and the values of a row, for a scene in the plane or in
 /// space.
 std::vector<std::string> series_columns(std::size_t dimensions);

@@ -156,6 +156,26 @@ class ChartMpm : public testing::Test {
   std::string error_;
 };
 
+// In space energies are whole, not per metre: columns, units and pictures follow.
+TEST_F(ChartMpm, InSpace) {
+  ASSERT_EQ(run({"chart", "mpm", REPOSE_SOURCE_DIR "/data/scenes/axisymmetric_mu_i.toml", "--set",
+                 "scene.end_time=0.02", "--transfers", "relaxed", "--kernels", "quadratic",
+                 "--cells", "0.05", "--courants", "0.8,0.4", "--no-plot"},
+                "space"),
+            0)
+      << error_;
+  const Table chart = table_of(base_ / "space/chart.csv");
+  ASSERT_EQ(chart.size(), 2u);
+  EXPECT_EQ(chart[0].count("kinetic_J_per_m"), 0u);
+  EXPECT_GT(std::stod(chart[0].at("kinetic_J")), 0.0);
+  EXPECT_GE(std::stod(chart[0].at("peak_kinetic_J")), std::stod(chart[0].at("kinetic_J")));
+  const Table history = table_of(base_ / "space/history.csv");
+  EXPECT_EQ(history.size(), 2u * 61u);
+  EXPECT_EQ(std::stod(history.back().at("kinetic_J")), std::stod(chart[1].at("kinetic_J")));
+  const io::Json answer = summary("space")["answer"];
+  EXPECT_TRUE(answer[0]["kinetic_J"].is_array()) << answer.dump();
+}
+
 // 512 points, 0.2 s: eight runs in about a second.
 TEST_F(ChartMpm, AQuickChart) {
   const std::vector<std::string> quick{"chart",        "mpm",   "--quick",           "--transfers",
