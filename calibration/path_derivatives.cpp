@@ -83,7 +83,7 @@ struct OutsideDrive final : Drive {
       readout.rho_p = numbers[static_cast<std::size_t>(i)];
     if (const int i = point::parameter_index(law.parameters, "d"); i >= 0)
       readout.d = numbers[static_cast<std::size_t>(i)];
-    readout.p_c_index = point::state_index(law.state, "p_c");
+    point::find_variables(law.state, law.derived, readout);
     const std::size_t n = parameters();
     readout.sigma_r_start = D(-0.5) * (numbers[n] + numbers[n + 2]);
     return curve.outcome;

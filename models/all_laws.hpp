@@ -7,6 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "models/critical_state_mu_i.hpp"
 #include "models/material.hpp"
 #include "models/modified_cam_clay.hpp"
 #include "models/mu_i.hpp"
@@ -20,7 +21,7 @@ namespace repose {
 using AllLaws =
     std::tuple<ModifiedCamClay<Compression::ln_v_ln_p>, ModifiedCamClay<Compression::v_ln_p>,
                MuIElastoviscoplastic, MuIRegularised, MuIBarkerGray, Newtonian<Tension::cut_off>,
-               Newtonian<Tension::carried>, NeoHookean>;
+               Newtonian<Tension::carried>, NeoHookean, CriticalStateMuI>;
 
 /// Calls f(law) with a value of the law type that belongs to `info` (one of library_laws()), or
 /// otherwise() for a law that is none of the library's.

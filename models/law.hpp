@@ -114,6 +114,11 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 ///   elastic_volume_strain(P, σ, state, ρ)  −∫dp/K from p = 0 (or where contact is made) [-]
 ///   density_at(P, p, ocr)            ρ at rest under pressure p [kg/m³]
 ///   initial(P, conditions)           InitialPoint; throws InputError
+/// A law may say more:
+///   derived, derive(P, σ, state)     table and values of variables that follow from the state, for
+///                                    output (derived_fields())
+///   rate_dependent                   the plastic rate has terms without D: stress beyond yield flows
+///   steady_shear_stress(P, p, γ̇)     τ of steady shear (shear_response.hpp)
 /// LawDefaults answers what a simple law has no more to say about.
 template <class L>
 concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
@@ -142,6 +147,15 @@ concept ConstitutiveLaw = requires(const typename L::template Params<double>& P,
   { L::density_at(P, x, x) } -> std::same_as<double>;
   { L::initial(P, given) } -> std::same_as<InitialPoint>;
 };
+
+/// The table of a law's derived variables; empty for most.
+template <class L>
+constexpr std::span<const StateField> derived_fields() {
+  if constexpr (requires { L::derived; })
+    return L::derived;
+  else
+    return {};
+}
 
 /// For a law to inherit: one form, no state variables, no condition between parameters, no yield,
 /// and all elastic work stored.

@@ -25,6 +25,7 @@ class LawMaterial final : public Material {
                                    L::doc,
                                    std::span<const ParamInfo>(L::parameters),
                                    std::span<const StateField>(L::state),
+                                   derived_fields<L>(),
                                    L::has_stress_memory};
     return table;
   }

@@ -92,8 +92,9 @@ double ModifiedCamClay<compression>::density_at(const Params<double>& P, double 
 
 template <Compression compression>
 InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
-                                                   const InitialConditions& given) {
-  reject_unused(name, given, true, true);
+                                                   const InitialConditions& given,
+                                                   std::string_view law) {
+  reject_unused(law, given, true, true);
   if (given.v && given.density)
     throw InputError("v", "give either v or density: v = rho_p/density");
   if (given.ocr && given.ocr_v)
@@ -120,7 +121,8 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
   double p_c = 0.0;
   if (!states_stress(given)) {
     // v and ocr on the compression line give p
-    if (!v) throw InputError("p", "modified_cam_clay needs an initial p, sigma, v or density");
+    if (!v)
+      throw InputError("p", std::string(law) + " needs an initial p, sigma, v or density");
     if (!has_line) throw InputError("Gamma", "finding p from the specific volume needs Gamma or N");
     if (given.ocr_v && P.p_shift > 0.0)
       throw InputError("ocr_v", "with p_shift, ocr_v needs an initial p, sigma_v or sigma");

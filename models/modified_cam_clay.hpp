@@ -172,7 +172,9 @@ struct ModifiedCamClay {
   /// through ocr_v times the vertical stress, under K0_nc or else K0; default: through the stress
   /// itself), and v or density or the compression line; or from v or density on the compression
   /// line alone. A v that the line contradicts by more than 0.5 % is refused, with both figures.
-  static InitialPoint initial(const Params<double>& P, const InitialConditions& given);
+  /// `law` is the name in messages.
+  static InitialPoint initial(const Params<double>& P, const InitialConditions& given,
+                              std::string_view law = name);
 
   template <class T>
   static T specific_volume(const Params<T>& P, const T& density) {

@@ -34,7 +34,7 @@ Readout<T> make_readout(const ElementStart<L, T>& start, Frame frame) {
   r.frame = frame;
   if constexpr (requires { start.parameters.rho_p; }) r.rho_p = start.parameters.rho_p;
   if constexpr (requires { start.parameters.d; }) r.d = start.parameters.d;
-  r.p_c_index = state_index(L::state, "p_c");
+  find_variables(L::state, derived_fields<L>(), r);
   r.sigma_r_start = T(-0.5) * (start.stress_and_state[0] + start.stress_and_state[2]);
   return r;
 }

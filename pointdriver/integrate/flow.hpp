@@ -21,6 +21,25 @@ constexpr bool is_rate_dependent() {
   }
 }
 
+/// The variables of an element for output: state, then derived. `y` is its stress and state, and
+/// what comes after.
+template <class L, class T, std::size_t n>
+std::array<T, max_state> variables(const typename L::template Params<T>& P,
+                                   const std::array<T, n>& y) {
+  constexpr std::size_t m = L::state.size();
+  std::array<T, max_state> all{};
+  for (std::size_t i = 0; i < m; ++i) all[i] = y[6 + i];
+  if constexpr (!derived_fields<L>().empty()) {
+    Sym<T, 6> stress;
+    for (std::size_t i = 0; i < 6; ++i) stress.c[i] = y[i];
+    typename L::template State<T> state{};
+    for (std::size_t i = 0; i < m; ++i) state[i] = y[6 + i];
+    const auto derived = L::derive(P, stress, state);
+    for (std::size_t i = 0; i < derived.size(); ++i) all[m + i] = derived[i];
+  }
+  return all;
+}
+
 /// The state of an element as one vector, and its time derivative as a function of it.
 ///
 ///     y = (σ[6], state[m], ε[6], work, dissipated, hypoelastic)
@@ -38,7 +57,7 @@ class Flow {
   static constexpr std::size_t i_work = i_strain + 6;
   static constexpr std::size_t size = i_work + 3;
   using Y = std::array<T, size>;
-  static_assert(m <= max_state);
+  static_assert(m + derived_fields<L>().size() <= max_state);
 
   Flow(const Parameters& P, const T& density_0, bool energy)
       : P_(P),

@@ -236,7 +236,7 @@ class LegRun {
     if (q == Quantity::v || q == Quantity::density) row.density = flow_.density(y);
     if (has_rate_) {
       row.strain_rate = rate_;
-    } else if (q == Quantity::shear_rate || q == Quantity::I) {
+    } else if (q == Quantity::shear_rate || (q == Quantity::I && readout_.I_index < 0)) {
       Sym<T, 6> stress_rate;
       typename F::State state_rate{};
       flow_.respond(y, flow_.branch, row.strain_rate, stress_rate, state_rate);
@@ -256,7 +256,7 @@ class LegRun {
     row.leg = index_;
     row.stress = F::stress(y);
     row.strain = F::strain(y);
-    for (std::size_t i = 0; i < F::m; ++i) row.state[i] = y[6 + i];
+    row.state = variables<L>(flow_.parameters(), y);
     return row;
   }
 

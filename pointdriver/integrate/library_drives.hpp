@@ -1,8 +1,9 @@
 #pragma once
 /// \file
 /// The library's own laws along a path, in plain numbers and with derivatives: compiled once each,
-/// in drive_clay.cpp, drive_grains.cpp, drive_fluids.cpp and their _dual twins, for everything
-/// that drives them. (A law from outside brings its own: register_law.hpp.)
+/// in drive_clay.cpp, drive_grains.cpp, drive_fluids.cpp, drive_critical_state.cpp and their _dual
+/// twins, for everything that drives them. (A law from outside brings its own:
+/// register_law.hpp.)
 
 #include "models/all_laws.hpp"
 #include "pointdriver/integrate/drive.hpp"
@@ -23,7 +24,8 @@ namespace repose::point {
   extern REPOSE_DRIVE_PATH(T, MuIBarkerGray);                           \
   extern REPOSE_DRIVE_PATH(T, Newtonian<Tension::cut_off>);             \
   extern REPOSE_DRIVE_PATH(T, Newtonian<Tension::carried>);             \
-  extern REPOSE_DRIVE_PATH(T, NeoHookean)
+  extern REPOSE_DRIVE_PATH(T, NeoHookean);                              \
+  extern REPOSE_DRIVE_PATH(T, CriticalStateMuI)
 
 REPOSE_DRIVE_PATHS(double);
 REPOSE_DRIVE_PATHS(Gradient);

@@ -79,7 +79,7 @@ void read_column_with_gradient(const LawInfo& law, std::span<const double> theta
   };
   constant("rho_p", readout.rho_p);
   constant("d", readout.d);
-  readout.p_c_index = state_index(law.state, "p_c");
+  find_variables(law.state, law.derived, readout);
   set_pore_pressure_datum(curve.rows, test.path.first_undrained, readout);
   for (const Row<Gradient>& row : curve.rows) {
     const Gradient x = read(quantity, row, readout);

@@ -61,7 +61,7 @@ void read_column(const LawInfo& law, std::span<const double> theta, const PointT
     readout.rho_p = theta[static_cast<std::size_t>(i)];
   if (const int i = parameter_index(law.parameters, "d"); i >= 0)
     readout.d = theta[static_cast<std::size_t>(i)];
-  readout.p_c_index = state_index(law.state, "p_c");
+  find_variables(law.state, law.derived, readout);
   values.clear();
   values.reserve(curve.rows.size());
   if (curve.rows.empty()) return;
@@ -78,9 +78,10 @@ std::vector<Quantity> columns_of(const LawInfo& law, const PointTest& test) {
   if (shear) columns.push_back(Q::tau);
   if (test.path.undrained) columns.push_back(Q::u);
   if (parameter_index(law.parameters, "rho_p") >= 0) columns.push_back(Q::v);
-  if (state_index(law.state, "p_c") >= 0) columns.push_back(Q::p_c);
+  if (variable_index(law, "p_c") >= 0) columns.push_back(Q::p_c);
+  if (variable_index(law, "I") >= 0 || (shear && parameter_index(law.parameters, "d") >= 0))
+    columns.push_back(Q::I);
   if (shear) {
-    if (parameter_index(law.parameters, "d") >= 0) columns.push_back(Q::I);
     columns.push_back(Q::mu);
   }
   return columns;
@@ -113,8 +114,7 @@ double start_value(const LawInfo& law, std::span<const double> theta, const Poin
         const ElementStart<L, double> start = plain_start<L>(theta, test);
         Row<double> row;
         for (std::size_t i = 0; i < 6; ++i) row.stress.c[i] = start.stress_and_state[i];
-        for (std::size_t i = 0; i < L::state.size(); ++i)
-          row.state[i] = start.stress_and_state[6 + i];
+        row.state = variables<L>(start.parameters, start.stress_and_state);
         row.density = start.density;
         return read(quantity, row, make_readout(start, test.path.frame));
       },

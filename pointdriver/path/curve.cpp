@@ -54,9 +54,12 @@ int parameter_index(std::span<const ParamInfo> table, std::string_view name) {
   return -1;
 }
 
-int state_index(std::span<const StateField> table, std::string_view name) {
-  for (std::size_t i = 0; i < table.size(); ++i)
-    if (table[i].name == name) return static_cast<int>(i);
+int variable_index(std::span<const StateField> state, std::span<const StateField> derived,
+                   std::string_view name) {
+  for (std::size_t i = 0; i < state.size(); ++i)
+    if (state[i].name == name) return static_cast<int>(i);
+  for (std::size_t i = 0; i < derived.size(); ++i)
+    if (derived[i].name == name) return static_cast<int>(state.size() + i);
   return -1;
 }
 

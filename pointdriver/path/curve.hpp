@@ -9,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "models/law.hpp"
+#include "models/material.hpp"
 #include "pointdriver/path/status.hpp"
 
 namespace repose::point {
 
-inline constexpr std::size_t max_state = 4;  ///< state variables of a law
+inline constexpr std::size_t max_state = 4;  ///< variables of a law: state, then derived
 
 /// The element at one instant. Tensors tension positive; strains logarithmic, zero at the start.
 template <class T>
@@ -94,7 +94,8 @@ struct Readout {
   Frame frame = Frame::general;
   T rho_p{std::numeric_limits<double>::quiet_NaN()};  ///< grain density, NaN if the law has none
   T d{std::numeric_limits<double>::quiet_NaN()};      ///< grain size, NaN if the law has none
-  int p_c_index = -1;                                 ///< state variable "p_c", -1 if none
+  int p_c_index = -1;                                 ///< variable "p_c", -1 if none
+  int I_index = -1;  ///< variable "I", -1 if none: I is then that of the strain rate
   T sigma_r_start{0.0};                               ///< radial stress where u is 0 [Pa]
   int first_undrained = 0;                            ///< before this leg u is 0
   StrainMeasure measure = StrainMeasure::logarithmic;  ///< of ε_a, ε_r, ε_v and, with an axis, ε_q
@@ -162,6 +163,7 @@ T read(Quantity quantity, const Row<T>& row, const Readout<T>& readout) {
     case Quantity::shear_rate:
       return T(2.0) * shear_norm(deviator(row.strain_rate));  // γ̇ = √(2D′:D′)
     case Quantity::I: {
+      if (readout.I_index >= 0) return row.state[static_cast<std::size_t>(readout.I_index)];
       const T p = pressure(s);
       if (!(value(p) > 0.0)) return nan;
       return read(Quantity::shear_rate, row, readout) * readout.d *
@@ -187,8 +189,19 @@ void set_pore_pressure_datum(const std::vector<Row<T>>& rows, int first_undraine
   if (datum != nullptr) readout.sigma_r_start = T(-0.5) * (datum->stress[0] + datum->stress[2]);
 }
 
-/// Index of a parameter or state variable in a law's tables, -1 if it has none of that name.
+/// Index of a parameter in a law's table, -1 if it has none of that name.
 int parameter_index(std::span<const ParamInfo> table, std::string_view name);
-int state_index(std::span<const StateField> table, std::string_view name);
+/// Index in Row::state of a state variable or derived one, -1 if the law has none of that name.
+int variable_index(std::span<const StateField> state, std::span<const StateField> derived,
+                   std::string_view name);
+inline int variable_index(const LawInfo& law, std::string_view name) {
+  return variable_index(law.state, law.derived, name);
+}
+template <class T>
+void find_variables(std::span<const StateField> state, std::span<const StateField> derived,
+                    Readout<T>& readout) {
+  readout.p_c_index = variable_index(state, derived, "p_c");
+  readout.I_index = variable_index(state, derived, "I");
+}
 
 }  // namespace repose::point

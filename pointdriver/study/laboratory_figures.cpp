@@ -373,7 +373,7 @@ class Reader {
     using Way = CompressionBranch::Way;
     const auto& x = column(leg(stage).kind == Kind::oedometer ? Quantity::sigma_a : Quantity::p);
     const auto& p_c = column(Quantity::p_c);
-    const bool knows_yield = state_index(law_.state, "p_c") >= 0;
+    const bool knows_yield = variable_index(law_, "p_c") >= 0;
     // NaN stays until virgin compression tells
     const auto carry = [&](double now, bool is_virgin) {
       largest = std::isnan(largest) && !is_virgin ? largest : std::fmax(largest, now);

@@ -139,7 +139,7 @@ TEST_F(CommandTest, Models) {
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_EQ(unknown.err,
             "repose models: unknown law \"mu_j\"; did you mean \"mu_i\"? (known: "
-            "\"modified_cam_clay\", \"mu_i\", \"newtonian\", \"neo_hookean\")\n");
+            "\"modified_cam_clay\", \"mu_i\", \"newtonian\", \"neo_hookean\", \"critical_state_mu_i\")\n");
   EXPECT_TRUE(Json::parse(run({"models", "mu_i", "--json"}).out).is_array());
 }
 

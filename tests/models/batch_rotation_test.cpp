@@ -51,8 +51,12 @@ TYPED_TEST(BatchRotation, FullTurnKeepsTheInvariants) {
         const double tolerance = (plane ? 16.0 : 24.0) * epsilon * steps * largest(before);
         EXPECT_NEAR(pressure(after), pressure(before), tolerance) << example.label;
         EXPECT_NEAR(mises(after), mises(before), 2.0 * tolerance) << example.label;
+        // A stress on its yield surface may be turned out of it by that much: where that flows, the
+        // hardening follows, d ln p_c = d ln p at most.
+        const double flow = requires { L::rate_dependent; } ? 2.0 * tolerance / pressure(before) : 0.0;
         for (std::size_t k = 0; k < L::state.size(); ++k)
-          EXPECT_EQ(columns.point(i).state[k], start[i].state[k]) << example.label;
+          EXPECT_NEAR(columns.point(i).state[k], start[i].state[k], flow * start[i].state[k])
+              << example.label;
         EXPECT_EQ(columns.density[i], start[i].density);
         if (!L::has_stress_memory) continue;
         // Cayley's rotation turns by 2 atan(θ/2) in a step: short of a full turn by this angle

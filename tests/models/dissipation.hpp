@@ -43,22 +43,39 @@ Dissipated dissipated(const typename L::template Params<double>& P, const LawPoi
   if constexpr (L::name == "mu_i" && L::has_stress_memory) {
     rest += (V1 - V0) * contract(s0, s0) / (4.0 * P.G);
   } else if constexpr (L::state.size() > 0) {
+    // the law at rest, whose elasticity a critical-state law shares
+    constexpr bool is_at_rest = L::name == "modified_cam_clay";
+    const auto at_rest = [&] {
+      if constexpr (is_at_rest)
+        return P;
+      else
+        return P.clay();
+    }();
+    const auto kappa_at = [&](double v) {
+      if constexpr (is_at_rest)
+        return L::kappa_star(P, v);
+      else
+        return P.kappa;
+    };
     // Cam-Clay: G follows p, Ḡ is the mean of the step. The shear energy |s|²/4G is replaced by its
     // value with Ḡ at fixed V, for which the argument above holds. The volume first yields by
     // e^{−z} at p₀, then is strained elastically by a: convexity leaves V₀′(e^z − 1)(p₁ + ψ₀) with
     // V₀′ = V₁e^a. The flow rule makes V₁(2q²λ_p/M² + p₁z) = V₁λ_p p p_c >= 0, so that what may
     // fall below zero, for z < 0, is |z|(|V₀′ − V₁|p₁ + V₀′ψ₀): second order in the step.
-    const double pt0 = p0 + P.p_shift;
-    const double pt1 = p1 + P.p_shift;
+    const double pt0 = p0 + at_rest.p_shift;
+    const double pt1 = p1 + at_rest.p_shift;
     // (V0 − V1)/ln(V0/V1), without the difference of two that are nearly alike
     const double t = trace(strain);
     const double V_mean = t == 0.0 ? V1 : V1 * std::expm1(-t) / -t;
-    const double kappa_step = L::kappa_star(P, P.rho_p * V_mean);
+    const double kappa_step = kappa_at(P.rho_p * V_mean);
     const double x = std::log(pt1 / pt0);
-    const double G_mean = P.shear_ratio() * pt0 * expm1_over(x) / kappa_step;
+    // (of the critical-state law: the mean of the elastic predictor; its flow rule makes the sum
+    // λ_p p[p_s + (M_I² − 1)(2p_s − p)] times 2V₁, and 2p_s ≥ p)
+    const double G_mean = P.shear_ratio() * pt0 *
+                          expm1_over(is_at_rest ? x : -trace(strain) / kappa_step) / kappa_step;
     const auto shear_energy = [&](const LawPoint<L>& at, const Sym<double, 6>& s) {
-      const double G = P.shear_ratio() * (pressure(at.stress) + P.p_shift) /
-                       L::kappa_star(P, P.rho_p / at.density);
+      const double G = P.shear_ratio() * (pressure(at.stress) + at_rest.p_shift) /
+                       kappa_at(P.rho_p / at.density);
       return contract(s, s) / (4.0 * G * at.density);
     };
     const double with_G = shear_energy(after, s1) - shear_energy(before, s0);

@@ -280,7 +280,7 @@ TYPED_TEST(LawContract, TinyAndHugeIncrements) {
           EXPECT_GT(point.state[0], 0.0) << example.label;
         }
         // a step too small to be seen changes nothing beyond its own size
-        if (size < 1e-20 && L::has_stress_memory && L::state.size() > 0) {
+        if (size < 1e-20 && L::has_stress_memory && L::state.size() > 0 && rests<L>(P, before)) {
           for (int k = 0; k < 6; ++k)
             EXPECT_NEAR(point.stress[k], before.stress[k],
                         200.0 * epsilon * largest(before.stress));

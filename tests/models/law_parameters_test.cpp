@@ -176,7 +176,21 @@ TEST(LawDefaults, AndRangesAreThose) {
         {"mu_inf", "0.05 >= 0"},
         {"I_1", "optional > 0"}}},
       {"newtonian", {{"eta", ">= 0"}, {"K", "> 0"}, {"alpha", "7 [1, 20]"}, {"rho_0", "> 0"}}},
-      {"neo_hookean", {{"E", "> 0"}, {"nu", "[0, 0.5)"}, {"rho_0", "> 0"}}}};
+      {"neo_hookean", {{"E", "> 0"}, {"nu", "[0, 0.5)"}, {"rho_0", "> 0"}}},
+      {"critical_state_mu_i",
+       {{"M", "(0, 3)"},
+        {"lambda", "> 0"},
+        {"kappa", "> 0"},
+        {"nu", "[0, 0.5)"},
+        {"Gamma", "optional > 1"},
+        {"N", "optional > 1"},
+        {"p_ref", "1000 > 0"},
+        {"rho_p", "2650 > 0"},
+        {"p_sep", "0.01 > 0"},
+        {"M_inf", "> 0"},
+        {"I_M", "> 0"},
+        {"I_v", "optional > 0"},
+        {"d", "> 0"}}}};
   for (const LawInfo& law : all_laws())
     for (const ParamInfo& info : law.parameters) {
       const auto& of_law = expected.at(std::string(law.name));
@@ -270,7 +284,7 @@ TEST(LawOptions, UnknownMissingAndForeign) {
             (std::pair<std::string, std::string>{
                 "name",
                 "unknown law \"mu_I\"; did you mean \"mu_i\"? (known: \"modified_cam_clay\", "
-                "\"mu_i\", \"newtonian\", \"neo_hookean\")"}));
+                "\"mu_i\", \"newtonian\", \"neo_hookean\", \"critical_state_mu_i\")"}));
   EXPECT_EQ(refusal_of({"mu_i", {{"compression", "v-ln_p"}}, column}),
             (std::pair<std::string, std::string>{
                 "compression", "mu_i has no option 'compression'; its option is 'form'"}));

@@ -70,6 +70,20 @@ inline std::vector<LawExample> examples_of(const LawInfo& law) {
                     spec({{"eta", 10.0}, {"K", 26000.0}, {"rho_0", 1300.0}, {"alpha", 1.0}}), 1e3,
                     1e-2, 1e-4});
   }
+  if (name == "critical_state_mu_i") {
+    // the column's clay at rest and its grains in flow: M_∞ = √3 μ_d, I_M = I_0/√3
+    Values grains{{"M", 0.6614},  {"lambda", 0.0186},      {"kappa", 0.001},   {"nu", 0.3},
+                  {"p_ref", 1.0}, {"Gamma", 1.0 / 0.648},  {"rho_p", 2000.0},  {"d", 0.0053},
+                  {"I_v", 0.5},   {"M_inf", 0.9904},       {"I_M", 0.1611}};
+    list.push_back({"column", spec(grains), 1e3, 1e-3, 1e-4});
+    grains.erase("I_v");
+    list.push_back({"column_of_one_volume", spec(grains), 1e3, 1e-3, 1e-4});
+    const Values kaolin{{"M", 0.888},   {"lambda", 0.161 / 2.2}, {"kappa", 0.062 / 2.2},
+                        {"nu", 0.3},    {"Gamma", 2.759},        {"p_ref", 1e3},
+                        {"d", 1e-6},    {"M_inf", 1.3 * 0.888},  {"I_M", 1e-11},
+                        {"I_v", 3e-10}};
+    list.push_back({"kaolin", spec(kaolin), 1e5, 2e-2, 1e3});
+  }
   if (name == "neo_hookean") {
     list.push_back({"rubber", spec({{"E", 1e7}, {"nu", 0.3}, {"rho_0", 1000.0}}), 1e5, 2e-2, 1e-4});
     list.push_back({"cork", spec({{"E", 1e5}, {"nu", 0.0}, {"rho_0", 200.0}}), 3e3, 0.05, 1e-3});
@@ -132,6 +146,15 @@ bool same_bits(const LawPoint<L>& a, const LawPoint<L>& b) {
 template <class L>
 constexpr bool yields = L::name != "newtonian" && L::name != "neo_hookean";
 
+/// Does the point stay as it is while nothing moves? (A stress beyond yield, if a law lets it be,
+/// relaxes.)
+template <class L>
+bool rests(const typename L::template Params<double>& P, const LawPoint<L>& point) {
+  if constexpr (requires { L::rate_dependent; })
+    return L::yield(P, point.stress, point.state, point.density, Sym<double, 6>{}) <= 0.0;
+  return true;
+}
+
 /// Laws whose pressure may be negative.
 template <class L>
 constexpr bool carries_tension = L::name == "neo_hookean" ||
@@ -193,7 +216,12 @@ double stress_scale(const typename L::template Params<double>& P, const LawPoint
   const double modulus = std::max(L::modulus(P, before.stress, before.state, before.density),
                                   L::modulus(P, after.stress, after.state, after.density));
   const bool follows_density = L::state.size() == 0;
-  return largest(before.stress) + largest(after.stress) +
+  // p of a law that adds to ln p is known to ε of the stresses that it is the mean of
+  const double p_before = pressure(before.stress);
+  const double of_mean = !follows_density && p_before > 0.0
+                             ? largest(before.stress) / p_before * largest(after.stress)
+                             : 0.0;
+  return largest(before.stress) + largest(after.stress) + of_mean +
          modulus * (largest(strain) + (follows_density ? 1.0 : 0.0));
 }
 

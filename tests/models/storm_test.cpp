@@ -50,6 +50,12 @@ double beyond_yield(const typename L::template Params<double>& P, const LawPoint
     // between the friction at rest and its limit the stress is that of the flow: the limit binds
     const double tau = shear_norm(deviator(point.stress));
     return p + tau > 0.0 ? (tau - std::max(P.mu_0, P.mu_d) * p) / (p + tau) : 0.0;
+  } else if constexpr (L::name == "critical_state_mu_i") {
+    // some I carries the stress; where the volume does not depend on it, no more than M_∞ does
+    if (std::isfinite(L::inertial_number(P, point.stress, point.state))) return 0.0;
+    if (P.volume_rate() > 0.0) return 1.0;
+    const double surface = square(mises(point.stress) / P.M_inf);
+    return (surface - p * (point.state[0] - p)) / (surface + p * (point.state[0] + p));
   } else if constexpr (L::state.size() > 0) {
     const double F = L::yield(P, point.stress, point.state, point.density, Sym<double, 6>{});
     return F / (std::abs(p) + mises(point.stress) + point.state[0]);

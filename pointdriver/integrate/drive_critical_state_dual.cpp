@@ -1,0 +1,7 @@
+#include "pointdriver/integrate/library_drives.hpp"
+
+namespace repose::point {
+
+REPOSE_DRIVE_PATH(Gradient, CriticalStateMuI);
+
+}  // namespace repose::point
