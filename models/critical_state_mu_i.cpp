@@ -22,10 +22,12 @@ double CriticalStateMuI::density_at(const Params<double>& P, double p, double oc
 
 InitialPoint CriticalStateMuI::initial(const Params<double>& P, const InitialConditions& given) {
   InitialPoint point = Clay::initial(P.clay(), given, name);
+  const double p_c = point.state[Clay::i_p_c];
+  point.state[i_ln_p_c] = std::log(p_c);
   if (std::isnan(P.N)) return point;
   // CSM-2 at I = 0: what rounding, or a v that agrees with the line to some digits, has left open
   const double p = pressure(point.stress);
-  const double on_lines = Clay::density_at(P.clay(), p, point.state[i_p_c_rest] / p);
+  const double on_lines = Clay::density_at(P.clay(), p, p_c / p);
   if (!(std::abs(point.density / on_lines - 1.0) <= 1e-6))
     throw InputError(given.v ? "v" : "density",
                      "the initial state says p, p_c and v, and any two of them give the third: v = " +

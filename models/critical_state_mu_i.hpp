@@ -50,7 +50,9 @@ struct CriticalStateMuI {
       {"d", "d", "m", "grain diameter", Need::required, 0.0, positive, Scale::log},
   }};
   static constexpr std::array<StateField, 2> state{{
-      {"p_c_rest", "p_c0", "Pa", "preconsolidation pressure once the flow stops, 2p_s with I = 0"},
+      {"ln_p_c_rest", "ln p_c0", "-",
+       "ln of the preconsolidation pressure [Pa] that is left when the flow stops, 2p_s with I = 0 "
+       "(fast flow brings p_c0 itself below all numbers)"},
       Clay::state[1],  // rho_sep
   }};
   /// What follows from the state, for output.
@@ -77,7 +79,7 @@ struct CriticalStateMuI {
   };
   template <class T>
   using State = std::array<T, 2>;
-  static constexpr std::size_t i_p_c_rest = 0;
+  static constexpr std::size_t i_ln_p_c = 0;
   static constexpr std::size_t i_rho_sep = 1;
 
   /// κ < λ, M ≤ M_∞; Γ ↔ N.
@@ -99,14 +101,14 @@ struct CriticalStateMuI {
   template <class T, int N>
   static T hypoelastic_power(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
                              const T& density, const Sym<T, N>& D, const Sym<T, N>& stress_rate) {
-    return Clay::hypoelastic_power(P.clay(), stress, at, density, D, stress_rate);
+    return Clay::hypoelastic_power(P.clay(), stress, bearing(stress, at), density, D, stress_rate);
   }
 
   /// F/p_c of the law at rest: where > 0, it flows.
   template <class T, int N>
   static T yield(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at, const T& density,
                  const Sym<T, N>& D) {
-    return Clay::yield(P.clay(), stress, at, density, D);
+    return Clay::yield(P.clay(), stress, at_rest(stress, at), density, D);
   }
 
   /// M_I, how friction grows with the rate                                               CSM-1
@@ -128,11 +130,11 @@ struct CriticalStateMuI {
   template <class T, int N>
   static T flow_number(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at);
 
-  /// The derived variables: 2p_s = p_c0 e^{I/(I_v(λ−κ))} and I.                          CSM-2
+  /// The derived variables: 2p_s = p_c0 e^{jI} and I.                                    CSM-2
   template <class T, int N>
   static std::array<T, 2> derive(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at) {
     const T I = inertial_number(P, stress, at);
-    return {at[i_p_c_rest] * exp_pair(T(P.volume_rate() * I)).whole, I};
+    return {exp_pair(T(at[i_ln_p_c] + P.volume_rate() * I)).whole, I};
   }
 
   /// τ of steady shear under p > 0: M M_I p/√3 at I = γ̇d√(ρ_p/p)/√3                     CSM-5
@@ -147,7 +149,7 @@ struct CriticalStateMuI {
   template <class T, int N>
   static T modulus(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
                    const T& density) {
-    return Clay::modulus(P.clay(), stress, at, density);
+    return Clay::modulus(P.clay(), stress, bearing(stress, at), density);
   }
 
   /// The flow is part of the update, whatever the step: no viscous limit.
@@ -159,20 +161,25 @@ struct CriticalStateMuI {
   template <class T, int N>
   static T stored_energy(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
                          const T& density) {
-    return Clay::stored_energy(P.clay(), stress, at_rest(stress, at), density);
+    return Clay::stored_energy(P.clay(), stress, bearing(stress, at), density);
   }
 
   template <class T, int N>
   static T elastic_volume_strain(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at,
                                  const T& density) {
-    return Clay::elastic_volume_strain(P.clay(), stress, at_rest(stress, at), density);
+    return Clay::elastic_volume_strain(P.clay(), stress, bearing(stress, at), density);
   }
 
-  /// The state as the law at rest has it. Whatever carries a pressure bears: a solver of differential
-  /// equations may leave round-off in ρ_sep.
+  /// The state as the law at rest has it, for what does not ask for p_c. Whatever carries a pressure
+  /// bears: a solver of differential equations may leave round-off in ρ_sep.
   template <class T, int N>
-  static typename Clay::template State<T> at_rest(const Sym<T, N>& stress, const State<T>& at) {
-    return {at[i_p_c_rest], select(pressure(stress) > T(0.0), T(0.0), at[i_rho_sep])};
+  static Clay::State<T> bearing(const Sym<T, N>& stress, const State<T>& at) {
+    return {T(1.0), select(pressure(stress) > T(0.0), T(0.0), at[i_rho_sep])};
+  }
+  /// The same with p_c.
+  template <class T, int N>
+  static Clay::State<T> at_rest(const Sym<T, N>& stress, const State<T>& at) {
+    return {exp_pair(at[i_ln_p_c]).whole, bearing(stress, at)[Clay::i_rho_sep]};
   }
 
   /// At rest under p with p_c = ocr p, on the law's own lines; needs Γ or N.

@@ -31,7 +31,8 @@ struct CriticalStateReturn {
   T growth;    ///< M_∞/M − 1
   T I_M;
   T b;         ///< ln(p_tr/p_b), 0 but for huge steps
-  T c_at_rest; ///< c e^{−b/2}: I = c_at_rest (1 − e^{−t}) at w = 0
+  T c_at_rest;  ///< c e^{−b/2}: I = c_at_rest (1 − e^{−t}) at w = 0
+  T inv_slope;  ///< 1/(1 + r)
 
   struct Point {
     T t, w;                 ///< w moved into its bracket
@@ -41,74 +42,70 @@ struct CriticalStateReturn {
   };
 
   [[gnu::always_inline]] Point at(const T& t, const T& w_asked) const {
-    using std::sqrt;
-    const T zero(0.0), one(1.0), two(2.0);
+    const T zero(0.0), one(1.0), half(0.5);
     const ExpPair<T> e_t = exp_pair(T(-t));
     const T& X = e_t.whole;
     const T share = -e_t.minus_one;  // 1 − e^{−t}
     // I rises with w, so that θ does at least at the slope 1 + r: it is 0 between w = 0 and this end
     const T theta_0 = ell + j * c_at_rest * share;
     const auto dry = theta_0 > zero;
-    const T end = -theta_0 / (one + r);
+    const T end = -theta_0 * inv_slope;
     const T low = select(dry, end, zero), high = select(dry, zero, end);
     T w = select(w_asked < low, low, w_asked);
     w = select(w > high, high, w);
 
-    const T W = exp_pair(T(w - b)).whole;
-    const T root_W = sqrt(W);
+    const T root_W = exp_pair(T(half * (w - b))).whole;
+    const T XW = X * root_W * root_W;
     const T I = c * share * root_W;
     const T I_t = c * X * root_W;
-    const T inv_I = one / (I_M + I);
-    const T M_I = one + growth * I * inv_I;
-    const T m = growth * I_M * inv_I * inv_I / M_I;  // d ln M_I/dI
+    // M_I = B/A, A = I_M + I, B = I_M + (M_∞/M)I; m = d ln M_I/dI
+    const T A = I_M + I, B = A + growth * I;
+    const T inv_AB = one / (A * B);
+    const T m = growth * I_M * inv_AB;
+    const T Q = eta * XW * (A * A * inv_AB);
+    const T Q2 = Q * Q;
+    const T weight = T(2.0) * Q2 / (one + Q2);
     const T theta = ell + (one + r) * w + j * I;
     const auto huge = theta > T(600.0);
     const T e_theta = exp_pair(select(huge, T(600.0), theta)).whole;
-    const T theta_w = one + r + T(0.5) * j * I;
+    const T theta_w = one + r + half * j * I;
     const T theta_t = j * I_t;
-    const T XW = X * W;
-    const T inv_share = one / share;
-    const T per_w = a * XW * inv_share;  // u/w
-    const T u = per_w * w;
-    const T u_w = per_w * (one + w);
-    const T u_t = -u * inv_share;
-    // what the logarithm is of; the shares in it of e^θ (wet) and −u (dry)
-    const T sum = select(dry, T(one - u), T(e_theta + u));
-    const T log_sum = select(huge && negated(dry), theta, T(ln(sum)));
-    const T inv_sum = one / sum;
-    const T Q = eta * XW / M_I;
-    const T Q2 = Q * Q;
-    const T weight = two * Q2 / (one + Q2);
+    // of what the logarithm in V is, times 1 − e^{−t}: e^θ + u or 1 − u
+    const T aXW = a * XW;
+    const T flow = aXW * w;  // u times that
+    const T wet_part = share * e_theta;
+    const T sum = select(dry, T(share - flow), T(wet_part + flow));
+    const T inv = one / (share * sum);
+    const T inv_sum = share * inv;
+    const T log_sum = select(huge && negated(dry), theta, T(ln(T(sum * sum * inv))));
+    const T flow_w = aXW * (one + w);
     Point x;
     x.t = t;
     x.w = w;
     x.V = select(dry, T(theta - log_sum), log_sum);
-    x.V_t = select(dry, T(theta_t + u_t * inv_sum), T((e_theta * theta_t + u_t) * inv_sum));
-    x.V_w = select(dry, T(theta_w + u_w * inv_sum), T((e_theta * theta_w + u_w) * inv_sum));
-    x.Psi = ln(T(T(0.5) * (one + Q2))) - theta;
+    x.V_t = select(dry, T(theta_t - flow * inv), T((share * wet_part * theta_t - flow) * inv));
+    x.V_w = select(dry, T(theta_w + flow_w * inv_sum), T((wet_part * theta_w + flow_w) * inv_sum));
+    x.Psi = ln(T(half * (one + Q2))) - theta;
     x.Psi_t = -weight * (one + m * I_t) - theta_t;
-    x.Psi_w = weight * (one - T(0.5) * m * I) - theta_w;
+    x.Psi_w = weight * (one - half * m * I) - theta_w;
     x.fall_q = X;
-    x.rise_p_over = W;
+    x.rise_p_over = root_W * root_W;
     return x;
   }
 
-  /// Newton's step in both unknowns. `volume_step` is the part of w's that satisfies the volume,
-  /// `w_along` dw/dt along it.
-  [[gnu::always_inline]] static void newton(const Point& x, T& t_step, T& w_step, T& volume_step,
-                                            T& w_along) {
-    const T inv = T(1.0) / x.V_w;
-    volume_step = -x.V * inv;
-    w_along = -x.V_t * inv;
-    t_step = -(x.Psi + x.Psi_w * volume_step) / (x.Psi_t + x.Psi_w * w_along);
-    w_step = volume_step + w_along * t_step;
+  /// Newton's step in both unknowns.
+  [[gnu::always_inline]] static void newton(const Point& x, T& t_step, T& w_step) {
+    const T inv = T(1.0) / (x.Psi_t * x.V_w - x.Psi_w * x.V_t);
+    t_step = (x.Psi_w * x.V - x.Psi * x.V_w) * inv;
+    w_step = (x.Psi * x.V_t - x.Psi_t * x.V) * inv;
   }
 
   /// Newton's step in t from the trial state, t = w = 0, where I = 0. Returns Ψ there. (Of no use
   /// where b > 0.)
   [[gnu::always_inline]] T first_step(T& t_step) const {
     const T one(1.0);
-    const T Q = eta * exp_pair(T(-b)).whole;
+    T Q = eta;
+    if (any(b > T(0.0))) Q = eta * exp_pair(T(-b)).whole;
     const T Q2 = Q * Q;
     const T weight = T(2.0) * Q2 / (one + Q2);
     const T Psi = ln(T(T(0.5) * (one + Q2))) - ell;
@@ -124,19 +121,23 @@ struct CriticalStateReturn {
     const T zero(0.0), one(1.0);
     const ExpPair<T> e_t = exp_pair(T(-t));
     const T theta_0 = ell - j * c_at_rest * e_t.minus_one;
-    const T z = e_t.minus_one / e_t.whole * exp_pair(theta_0).minus_one / a;
+    const T z = e_t.minus_one * exp_pair(theta_0).minus_one / (e_t.whole * a);
+    const auto small = z * z < T(0.04);
+    const T near_trial = z - z * z;
+    if (!any(negated(small))) return near_trial;
     const T log_z = ln(T(one + select(z > zero, z, zero)));
     const T about_z = log_z * (one - ln(T(one + log_z)) / (T(2.0) + log_z));
     // not beyond where jI alone would bring θ to 0
     const T most = T(-2.0) * ln(T(j * c_at_rest * e_t.minus_one / select(ell < zero, ell, T(-one))));
     const T wet = select(about_z < most, about_z, most);
     const T dry = T(-0.5) * theta_0 / (one + r + T(0.5) * j * c_at_rest * -e_t.minus_one);
-    return select(theta_0 > zero, select(z > dry, z, dry), wet);
+    const T far = select(theta_0 > zero, select(z > dry, z, dry), wet);
+    return select(small, near_trial, far);
   }
 
   CriticalStateReturn<Value<T>> values() const {
-    return {value(eta),    value(ell), value(r), value(j),        value(c), value(a),
-            value(growth), value(I_M), value(b), value(c_at_rest)};
+    return {value(eta),    value(ell), value(r), value(j),         value(c),        value(a),
+            value(growth), value(I_M), value(b), value(c_at_rest), value(inv_slope)};
   }
 };
 
@@ -153,7 +154,7 @@ T volume_at(const CriticalStateReturn<T>& eq, const T& t, int* evaluations = nul
   constexpr int max_steps = 200;
   const T zero(0.0);
   const T theta_0 = eq.ell - eq.j * eq.c_at_rest * exp_pair(T(-t)).minus_one;
-  const T end = -theta_0 / (T(1.0) + eq.r);
+  const T end = -theta_0 * eq.inv_slope;
   T low = select(end < zero, end, zero);
   T high = select(end < zero, zero, end);
   const T start = eq.about_volume(t);
@@ -202,14 +203,15 @@ FlowEnd<T> flow_end(const CriticalStateReturn<T>& eq, Mask<T>& active,
   for (int step = 0; step < fast_steps && any(fast); ++step) {
     const auto x = eq.at(t, w);
     if (evaluations != nullptr) ++*evaluations;
-    T t_step, w_step, volume_step, w_along;
-    eq.newton(x, t_step, w_step, volume_step, w_along);
-    // done: the step left is so small that its error, of second order, is round-off; or Ψ is
+    T t_step, w_step;
+    eq.newton(x, t_step, w_step);
+    // done: the step left is so small that its error, of second order, is round-off; or Ψ is where
+    // the volume is satisfied (V_w > 0)
     const T scale_w = size(x.w) + t;
-    const T Psi = size(T(x.Psi + x.Psi_w * volume_step));
     const auto done = (size(t_step) <= T(1e-8) * t && size(w_step) <= T(1e-7) * scale_w &&
                        size(w_step) <= T(1e-8) * (size(x.w) + one)) ||
-                      (Psi <= round_off && size(volume_step) <= T(1e-7) * scale_w);
+                      (size(T(x.Psi * x.V_w - x.Psi_w * x.V)) <= round_off * x.V_w &&
+                       size(x.V) <= T(1e-7) * scale_w * x.V_w);
     const auto ends = fast && done;
     end.t = select(ends, T(t + t_step), end.t);
     end.w = select(ends, T(x.w + w_step), end.w);
@@ -218,15 +220,21 @@ FlowEnd<T> flow_end(const CriticalStateReturn<T>& eq, Mask<T>& active,
         select(ends, T((one - w_step * (one - half * w_step)) / x.rise_p_over), end.p_ratio);
     active = active && !ends;
     fast = fast && !done;
+    if (!any(fast)) break;
     // far from the volume, w moves alone; t by no more than half of itself downwards, and upwards
     // by no more than it has been seen to go
     const auto far = size(x.V) > one;
-    T bounded = select(t_step < -half * t, T(-half * t), t_step);
     const T longest = T(8.0) * last + T(4.0) * t;
+    T bounded = select(t_step < -half * t, T(-half * t), t_step);
     bounded = select(far, zero, select(bounded > longest, longest, bounded));
+    const auto cut = negated(bounded == t_step);
+    if (any(cut && fast)) {
+      const T inv = one / x.V_w;
+      w_step = select(cut, T((-x.V - x.V_t * bounded) * inv), w_step);
+    }
     last = select(far, last, size(bounded));
     t = select(fast, T(t + bounded), t);
-    w = select(fast, T(x.w + volume_step + w_along * bounded), w);
+    w = select(fast, T(x.w + w_step), w);
   }
   if (!any(active)) return end;
 
@@ -293,20 +301,22 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
   auto carried = apart && !apart;
   T share = one;
   T strain_v = strain_total;
-  T p_c_n = at[i_p_c_rest];
+  const T ln_contact = ln(p_contact);
+  const T ln_2(0.69314718055994530942);
+  T ln_p_c_n = at[i_ln_p_c];
   if (any(apart)) {
     const T rho_sep = select(apart, at[i_rho_sep], inc.density);
     const T dilated = ln(T(rho_sep / inc.density));
     const T I_contact = T(2.0 / std::sqrt(3.0)) * shear_norm(strain_whole) * P.d *
                         sqrt(T(P.rho_p / p_contact)) / inc.dt;
     carried = apart && !touching &&
-              ln(T(half * p_c_n / p_contact)) + volume_rate * I_contact > dilated / hardening;
+              ln_p_c_n - ln_2 - ln_contact + volume_rate * I_contact > dilated / hardening;
     const auto rejoining = apart && touching;
     strain_v = select(rejoining, T(-dilated), select(carried, zero, strain_total));
     const T whole = select(strain_total > zero, strain_total, one);
     share = select(rejoining, T(strain_v / whole), one);
     share = select(share > one, one, share);
-    p_c_n = select(carried, T(p_c_n * exp_pair(T(-dilated / hardening)).whole), p_c_n);
+    ln_p_c_n = select(carried, T(ln_p_c_n - dilated / hardening), ln_p_c_n);
     touching = touching || carried;
   }
   const T p_n = select(apart, p_contact, pressure(stress));
@@ -331,6 +341,7 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
   const T Q2 = T(6.0) * contract(strain_dev, strain_dev);
   const T q2_trial = Q0 + G * (Q1 + G * Q2);
   const T q2_M2 = q2_trial / square(P.M);
+  const T p_c_n = exp_pair(ln_p_c_n).whole;
   const T F = q2_M2 - p_trial * (p_c_n - p_trial);  // CSM-1 at I = 0
   const T round_off(16.0 * std::numeric_limits<double>::epsilon());
   const auto yields = touching && inc.dt > zero &&
@@ -340,12 +351,12 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
 
   T p = p_trial;
   T x = x_trial;  // ln(p/p_n)
-  T p_c = p_c_n;
+  T ln_p_c = ln_p_c_n;
   T q_ratio = one;
   Mask<T> failed = negated(finite(strain_total) && finite(size) &&
                            finite(T(contract(stress, stress))) && finite(F) && inc.dt >= zero &&
                            finite(T(inc.density + at[i_rho_sep])) && inc.density > zero &&
-                           p_n > zero && at[i_p_c_rest] > zero &&
+                           p_n > zero && finite(ln_p_c_n) &&
                            (inc.dt > zero || negated(beyond_numbers)));
   // what would leave e^{−200} of p_n parts without flowing
   const auto flows = yields && !failed && x_trial > T(-200.0);
@@ -356,11 +367,11 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
     const T three_G = T(3.0) * G;
     const T rate_scale = q_trial * P.d * sqrt(T(P.rho_p * inv_p)) / (three_G * inc.dt);
     // a step of no duration: no flow to speak of
-    const T c = select(rate_scale < T(1e150), rate_scale, T(1e150));
+    const T c = select(rate_scale < T(1e100), rate_scale, T(1e100));
     T c_at_rest = c;
     if (any(beyond_numbers)) c_at_rest = c * exp_pair(T(half * (x_base - x_trial))).whole;
     const CriticalStateReturn<T> eq{T(q_trial * inv_p / P.M),
-                                    T(ln(T(half * p_c_n / p_n)) - x_trial),
+                                    T(ln_p_c_n - ln_2 - ln(select(flows, p_n, one)) - x_trial),
                                     r,
                                     volume_rate,
                                     c,
@@ -368,7 +379,8 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
                                     T(P.M_inf / P.M - one),
                                     P.I_M,
                                     T(x_trial - x_base),
-                                    c_at_rest};
+                                    c_at_rest,
+                                    T(one / (one + r))};
     auto active = flows;
     FlowEnd<T> end;
     if constexpr (ScalarTraits<T>::is_dual) {
@@ -376,8 +388,8 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
       const auto root = flow_end(eq.values(), active, evaluations);
       auto x_root = eq.at(T(root.t), T(root.w));
       for (T* const residual : {&x_root.V, &x_root.Psi}) *residual = *residual - T(value(*residual));
-      T t_step, w_step, volume_step, along;
-      eq.newton(x_root, t_step, w_step, volume_step, along);
+      T t_step, w_step;
+      eq.newton(x_root, t_step, w_step);
       end.t = T(root.t) + t_step;
       end.w = T(root.w) + w_step;
       end.q_ratio = exp_pair(T(-end.t)).whole;
@@ -388,29 +400,30 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
     failed = failed || active;
     p = select(flows, T(p_trial * end.p_ratio), p);
     x = select(flows, T(x_trial - end.w), x);
-    p_c = select(flows, T(p_c_n * exp_pair(T(r * end.w)).whole), p_c);
+    ln_p_c = select(flows, T(ln_p_c_n + r * end.w), ln_p_c);
     q_ratio = select(flows, end.q_ratio, q_ratio);
   }
 
   // Loss of contact: what was dilated beyond p_sep is kept as the way back                (MCC-7).
   // Material so loose that only its flow carries it (p_c0 < p_sep) has half of p_sep to find its
   // flow in: from s = 0 at p_sep it contracts for some steps before shear dilates it.
-  const auto parting = touching && moving && p < select(p_c < p_contact, T(half * p_contact), p_contact);
+  const auto sunk = ln_p_c < ln_contact;
+  const auto parting = touching && moving && p < select(sunk, T(half * p_contact), p_contact);
   const auto bears = touching && !parting;
   T rho_sep = select(touching, zero, at[i_rho_sep]);
   if (any(parting)) {
     // down the swelling line from p_sep; and where p_c has sunk below p_sep, up the compression
     // line to p_sep first, so that v, p and p_c meet again on the law's own lines
-    const T sunk = select(p_c < p_contact, T(p_contact / p_c), one);
-    const T gone = P.kappa * (ln(T(p_contact / p_n)) - x) + hardening * ln(sunk);
+    const T depth = select(sunk, T(ln_contact - ln_p_c), zero);
+    const T gone = P.kappa * (ln(T(p_contact / p_n)) - x) + hardening * depth;
     const T back = inc.density * exp_pair(gone).whole;
     rho_sep = select(parting, back, rho_sep);
     failed = failed || (parting && negated(back > zero && finite(back)));
-    p_c = select(parting && p_c < p_contact, p_contact, p_c);
+    ln_p_c = select(parting && sunk, ln_contact, ln_p_c);
   }
 
   // pressures beyond the square root of the number range cannot be squared in the yield condition
-  failed = failed || (touching && negated(p + p_c < T(1e100) && p_c > T(1e-300)));
+  failed = failed || (touching && negated(p < T(1e100) && ln_p_c < T(230.0)));
   const Sym<T, N> s = q_ratio * (s_n + (T(2.0) * G) * strain_dev);
   const Sym<T, N> next = s - Sym<T, N>::isotropic(p);
   failed = failed || (bears && negated(finite(T(contract(next, next)))));
@@ -450,7 +463,7 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
     }
   }
   for (int i = 0; i < N; ++i) stress[i] = select(keeps, stress[i], T(select(bears, next[i], zero)));
-  at[i_p_c_rest] = select(keeps || negated(touching), at[i_p_c_rest], p_c);
+  at[i_ln_p_c] = select(keeps || negated(touching), at[i_ln_p_c], ln_p_c);
   at[i_rho_sep] = select(keeps, at[i_rho_sep], rho_sep);
   return failed;
 }
@@ -461,7 +474,7 @@ T CriticalStateMuI::flow_number(const Params<T>& P, const Sym<T, N>& stress, con
   if (!(value(p) > 0.0)) return T(0.0);  // apart
   // Ψ(I) = ln{½[1 + (η/M_I)²]} − ln(p_c0/2p) − jI falls                                     CSM-4
   const T eta = mises(stress) / (P.M * p);
-  const T ell = ln(T(T(0.5) * at[i_p_c_rest] / p));
+  const T ell = at[i_ln_p_c] - ln(T(T(2.0) * p));
   const T j = P.volume_rate();
   const T growth = P.M_inf / P.M - T(1.0);
   const auto Psi = [&](const T& I, T& slope) {
@@ -514,7 +527,10 @@ void CriticalStateMuI::rate(const Params<T>& P, const Sym<T, N>& stress, const S
   // Without shear stress there is no direction of flow and no rate effect: isotropic compression
   // (CSM-3: ε̇_q^p = 0) is that of the law at rest.
   if (branch == Branch::elastic || value(q) <= 1e-12 * value(p)) {
-    Clay::rate(P.clay(), stress, at, density, D, branch, stress_rate, state_rate);
+    const auto clay = at_rest(stress, at);
+    Clay::State<T> clay_rate{};
+    Clay::rate(P.clay(), stress, clay, density, D, branch, stress_rate, clay_rate);
+    state_rate = {clay_rate[Clay::i_p_c] / clay[Clay::i_p_c], T(0.0)};
     return;
   }
   const T I = flow_number(P, stress, at);
@@ -526,8 +542,7 @@ void CriticalStateMuI::rate(const Params<T>& P, const Sym<T, N>& stress, const S
   const Sym<T, N> s = deviator(stress);
   stress_rate = two_G * (deviator(D) - (T(1.5) * flow_q / q) * s) -
                 Sym<T, N>::isotropic(K * (-trace(D) - flow_v));
-  state_rate[i_p_c_rest] = at[i_p_c_rest] * flow_v / (P.lambda - P.kappa);  // CSM-2
-  state_rate[i_rho_sep] = T(0.0);
+  state_rate = {flow_v / (P.lambda - P.kappa), T(0.0)};  // CSM-2
 }
 
 }  // namespace repose

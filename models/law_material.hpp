@@ -25,8 +25,8 @@ class LawMaterial final : public Material {
                                    L::doc,
                                    std::span<const ParamInfo>(L::parameters),
                                    std::span<const StateField>(L::state),
-                                   derived_fields<L>(),
-                                   L::has_stress_memory};
+                                   L::has_stress_memory,
+                                   derived_fields<L>()};
     return table;
   }
   const LawInfo& law() const override { return info(); }

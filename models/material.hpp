@@ -47,8 +47,8 @@ struct LawInfo {
   std::string_view doc;
   std::span<const ParamInfo> parameters;
   std::span<const StateField> state;
-  std::span<const StateField> derived;  ///< variables that follow from the state, for output
   bool has_stress_memory;  ///< the stress at the start of a step matters
+  std::span<const StateField> derived{};  ///< variables that follow from the state, for output
 };
 
 /// The outcome of a batch: all points advanced, or the first one that could not be.

@@ -276,7 +276,7 @@ TYPED_TEST(LawContract, TinyAndHugeIncrements) {
           // the trace of a deviator is zero to 4 roundings of its components
           EXPECT_GE(p, -4.0 * epsilon * largest(point.stress)) << example.label << " size " << size;
         }
-        if constexpr (L::state.size() > 0) {
+        if constexpr (L::name == "modified_cam_clay") {
           EXPECT_GT(point.state[0], 0.0) << example.label;
         }
         // a step too small to be seen changes nothing beyond its own size

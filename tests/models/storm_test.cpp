@@ -55,7 +55,8 @@ double beyond_yield(const typename L::template Params<double>& P, const LawPoint
     if (std::isfinite(L::inertial_number(P, point.stress, point.state))) return 0.0;
     if (P.volume_rate() > 0.0) return 1.0;
     const double surface = square(mises(point.stress) / P.M_inf);
-    return (surface - p * (point.state[0] - p)) / (surface + p * (point.state[0] + p));
+    const double p_c = std::exp(point.state[0]);
+    return (surface - p * (p_c - p)) / (surface + p * (p_c + p));
   } else if constexpr (L::state.size() > 0) {
     const double F = L::yield(P, point.stress, point.state, point.density, Sym<double, 6>{});
     return F / (std::abs(p) + mises(point.stress) + point.state[0]);
@@ -146,7 +147,7 @@ void storm(const LawExample& example, long updates, unsigned seed, Worst& worst)
         continue;
       }
       ASSERT_TRUE(is_finite(after)) << example.label;
-      if constexpr (L::state.size() > 0) {
+      if constexpr (L::name == "modified_cam_clay") {
         ASSERT_GT(after.state[0], 0.0) << example.label;
       }
       // a pressure that follows from density knows its zero to ε of the modulus only

@@ -61,6 +61,8 @@ const Case cases[] = {
     {"cam_clay_tilted", cam_clay("v-ln_p"), Kernel::quadratic, 35.0},
     {"mu_i_tilted", mu_i(26000.0), Kernel::quadratic, 35.0},
     {"newtonian_tilted", fluid, Kernel::quadratic, 35.0},
+    {"critical_state", critical_state(), Kernel::cubic, 0.0},
+    {"critical_state_tilted", critical_state(), Kernel::quadratic, 35.0},
 };
 INSTANTIATE_TEST_SUITE_P(Laws, CollapseTest, ::testing::ValuesIn(cases),
                          [](const auto& one) { return std::string(one.param.name); });

@@ -20,7 +20,8 @@ const Case every_law[] = {{"newtonian", newtonian(0.1, 2e4, 7, 1000), 50.0},
                           {"mu_i", mu_i(), 50.0},
                           {"mu_i_regularised", mu_i(254800, "regularised"), 50.0},
                           {"cam_clay", cam_clay(), 2.27},
-                          {"cam_clay_v", cam_clay("v-ln_p"), 2.27}};
+                          {"cam_clay_v", cam_clay("v-ln_p"), 2.27},
+                          {"critical_state", critical_state(), 2.27}};
 
 class FreeMotionTest : public ::testing::TestWithParam<Case> {
  protected:
@@ -110,13 +111,13 @@ TEST(FreeFallTest, EveryPointFallsLikeAStone) {
 // atan(½ωΔt), to round-off, and the law does the rest.
 TEST(RotationTest, StressTurnsWithTheBody) {
   const double omega = 4.0, dt = 2e-3;
-  for (const LawSpec& law : {mu_i(), cam_clay(), cam_clay("v-ln_p")}) {
+  for (const LawSpec& law : {mu_i(), cam_clay(), cam_clay("v-ln_p"), critical_state()}) {
     Scene scene = empty_box(1.0, 1.0, 0.025);
     Body body = block(0.3, 0.3, 0.4, 0.4, law);
     body.spin = omega;
     body.initial = {};
     body.initial.sigma = {{1000.0, 1300.0, 1100.0, 80.0, 0.0, 0.0}};
-    if (law.name == "modified_cam_clay") body.initial.ocr = 1.5;
+    if (law.values.count("kappa") > 0) body.initial.ocr = 1.5;
     scene.bodies = {body};
     scene.dt = dt;
     Simulation simulation(scene, 2);

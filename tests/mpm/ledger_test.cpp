@@ -334,6 +334,8 @@ const Collapse collapses[] = {
     {"clay_v", cam_clay("v-ln_p"), 0.0, Viscosity::explicit_force, Storage::double_precision, 3e-6},
     {"clay_averaged", cam_clay(), 300.0, Viscosity::explicit_force, Storage::double_precision,
      3e-6},
+    {"critical_state", critical_state(), 0.0, Viscosity::explicit_force, Storage::double_precision,
+     3e-6},
     {"grains", mu_i(), 0.0, Viscosity::explicit_force, Storage::double_precision, 3e-6},
     {"grains_averaged", mu_i(), 50.0, Viscosity::explicit_force, Storage::double_precision, 3e-6},
     {"grains_float", mu_i(), 0.0, Viscosity::explicit_force, Storage::single_precision, 3e-6},

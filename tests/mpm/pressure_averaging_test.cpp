@@ -80,7 +80,8 @@ const Case every_law[] = {{"newtonian", newtonian(1.0, 26000.0, 7.0, 1300.0)},
                           {"mu_i", mu_i()},
                           {"mu_i_regularised", mu_i(254800.0, "regularised")},
                           {"cam_clay", cam_clay()},
-                          {"cam_clay_v", cam_clay("v-ln_p")}};
+                          {"cam_clay_v", cam_clay("v-ln_p")},
+                          {"critical_state", critical_state()}};
 
 /// One point under an isotropic pressure, with room for a pack.
 struct OnePoint {

@@ -51,12 +51,21 @@ inline LawSpec cam_clay(const char* compression = "ln_v-ln_p") {
            {"rho_p", 2000.0}}};
 }
 
+/// Cam-Clay at rest and the paper's grains in flow, in one law (physics.md, CSM-5).
+inline LawSpec critical_state(double I_v = 0.5) {
+  LawSpec law = cam_clay();
+  law.name = "critical_state_mu_i";
+  law.options.clear();
+  law.values.insert({{"M_inf", 0.9904}, {"I_M", 0.1611}, {"I_v", I_v}, {"d", 0.0053}});
+  return law;
+}
+
 inline Body block(double x, double y, double width, double height, LawSpec law) {
   Body body;
   body.origin = {x, y};
   body.size = {width, height};
   body.law = std::move(law);
-  if (body.law.name == "modified_cam_clay") {
+  if (body.law.name == "modified_cam_clay" || body.law.name == "critical_state_mu_i") {
     body.initial.p = 2.27;
     body.initial.ocr = 1.0;
   }

@@ -102,6 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
     Laws, SlabTest,
     ::testing::Values(SlabCase{"mu_i", mu_i(26000.0), Transfer::relaxed},
                       SlabCase{"cam_clay", cam_clay(), Transfer::apic},
+                      SlabCase{"critical_state", critical_state(), Transfer::relaxed},
                       SlabCase{"newtonian", newtonian(0.1, 26000.0, 7.0, 1300.0), Transfer::tpic},
                       SlabCase{"neo_hookean", rubber(1e5, 1300.0), Transfer::aflip}),
     [](const auto& c) { return c.param.name; });

@@ -190,7 +190,9 @@ TEST(CriticalState, IntegratorsAgree) {
         for (std::size_t i = 1; i < q.size(); ++i)
           error = std::max(error, std::abs(q[i] - q_exact[i]));
         EXPECT_LT(error, 5e-3 * 100e3);
-        if (coarse > 0.0) EXPECT_NEAR(error / coarse, 0.5, 0.1) << "first order";
+        if (coarse > 0.0) {
+          EXPECT_NEAR(error / coarse, 0.5, 0.1) << "first order";
+        }
         coarse = error;
       }
     }
