@@ -99,6 +99,8 @@ class PointRun {
     const study::Usage before = study::usage();
     result_ = study::drive(file_);
     const study::Usage after = study::usage();
+    for (std::string& remark : study::remarks(file_, result_))
+      file_.notes.push_back(std::move(remark));
     write(folder, "curve.csv", study::curve_csv(file_, result_));
     const Json report = summary(input, result_.wall_s, after.cpu_s - before.cpu_s);
     write(folder, "summary.json", report.dump(2) + "\n");

@@ -38,7 +38,10 @@ std::vector<Case> cases() {
              1e5,
              2e-2,
              1.0};
-    else if (law.name == "newtonian")
+    else if (law.name == "critical_state_mu_i") {
+      one = {{one.spec.name, {}, other_clay}, 1e5, 2e-2, 1e3};
+      one.spec.values.insert({{"M_inf", 1.154}, {"I_M", 1e-11}, {"I_v", 3e-10}, {"d", 1e-6}});
+    } else if (law.name == "newtonian")
       one.spec.values = fluid;
     else if (law.name == "neo_hookean")
       one = {{one.spec.name, {}, {{"E", 1e6}, {"nu", 0.3}, {"rho_0", 1000.0}}}, 1e3, 2e-2, 1e-3};

@@ -75,6 +75,8 @@ class Source {
     return fmt::format("{} ({}, %)", symbol, point::name_of(test_.path.measure));
   }
   bool has_p_c() const { return point::variable_index(law_, "p_c") >= 0; }
+  /// Does the law say an inertial number of its own?
+  bool has_I() const { return point::variable_index(law_, "I") >= 0; }
   const LawInfo& law() const { return law_; }
 
  private:
@@ -135,6 +137,16 @@ void stages(const Figure& figure, Axes& axes, const Source& source, const std::v
   stages(figure, axes, source, x, y, source.all_stages());
 }
 
+/// The slope M of the yield surface at a row: the law's own at rest; where the material flows at a
+/// rate that raises it, that of the ellipse through the stress, q² = M²p(p_c − p).
+double slope_of_surface(const Source& source, std::size_t row) {
+  const double M = source.parameter("M");
+  if (!(source.has_I() && source.column(Quantity::I)[row] > 0.0)) return M;
+  const double p = source.column(Quantity::p)[row], p_c = source.column(Quantity::p_c)[row];
+  const double through = std::abs(source.column(Quantity::q)[row]) / std::sqrt(p * (p_c - p));
+  return std::isfinite(through) ? through : M;
+}
+
 void stress_path(Figure& figure, const Source& source, bool undrained) {
   Axes& axes = figure.add_axes();
   axes.title = "stress path";
@@ -152,7 +164,8 @@ void stress_path(Figure& figure, const Source& source, bool undrained) {
       const auto p_c = source.column(Quantity::p_c, kPa);
       yield_surface(axes, "yield, start", M, p_c.front(), shift, extension, {Colour::grey, 1.2});
       if (std::abs(p_c.back() - p_c.front()) > 1e-3 * p_c.front())
-        yield_surface(axes, "yield, end", M, p_c.back(), shift, extension, {Colour::orange, 1.2});
+        yield_surface(axes, "yield, end", slope_of_surface(source, p.size() - 1), p_c.back(), shift,
+                      extension, {Colour::orange, 1.2});
       reach = std::max({reach, p_c.front(), p_c.back()});
     }
     const std::array<double, 2> line_p{0.0, reach}, line_q{0.0, M * reach};

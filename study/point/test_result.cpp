@@ -1,6 +1,8 @@
 #include "study/point/test_result.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 
 #include <fmt/compile.h>
@@ -21,6 +23,33 @@ TestResult drive(const input::PointTestFile& file) {
   result.figures = point::laboratory_figures(*result.law, result.theta, file.test, result.curve,
                                              file.secants_at);
   return result;
+}
+
+std::vector<std::string> remarks(const input::PointTestFile& file, const TestResult& result) {
+  std::vector<std::string> found;
+  if (point::variable_index(*result.law, "I") < 0 || result.curve.rows.empty()) return found;
+  const auto columns = columns_of(
+      file, result, std::array{point::Quantity::I, point::Quantity::p, point::Quantity::q});
+  double fastest = 0.0, steepest = 0.0;
+  for (std::size_t row = 0; row < result.curve.rows.size(); ++row) {
+    if (std::isfinite(columns[0][row])) fastest = std::max(fastest, columns[0][row]);
+    if (columns[1][row] > 0.0)
+      steepest = std::max(steepest, std::abs(columns[2][row]) / columns[1][row]);
+  }
+  // grains have I_v of 0.3 to 1; a smaller one by decades is that of a clay
+  const int i = point::parameter_index(result.law->parameters, "I_v");
+  const double I_v = i < 0 ? std::nan("") : result.theta[static_cast<std::size_t>(i)];
+  if (I_v < 1e-3 && fastest > 0.05 * I_v)
+    found.push_back(
+        fmt::format("I reaches {:.2g} of I_v: at constant volume the pressure of so fast a clay grows like the "
+                    "square of its rate; up to 0.05 the effect is one of some per cent",
+                    fastest / I_v));
+  if (steepest > 3.0)
+    found.push_back(
+        fmt::format("q/p reaches {:.3g}: above 3 a principal stress is tension. A jump of the rate at constant "
+                    "pressure does that, until dilation has caught up",
+                    steepest));
+  return found;
 }
 
 StageColumns stage_columns(const point::Path& path) {

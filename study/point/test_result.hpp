@@ -22,6 +22,10 @@ struct TestResult {
 /// Drives it. Never throws for numbers: see TestResult::failed.
 TestResult drive(const input::PointTestFile& file);
 
+/// What a curve shows that its user should know before reading it (a warning each): flow of a
+/// critical-state law so fast that it leaves what the law is for (physics.md, CSM-9, CSM-10).
+std::vector<std::string> remarks(const input::PointTestFile& file, const TestResult& result);
+
 /// The columns of curve.csv beside the quantities of point::columns_of.
 struct StageColumns {
   bool stage = false;  ///< the test has several

@@ -233,6 +233,42 @@ TEST_F(PointCommand, writes_its_files_and_the_resolved_input_gives_the_same_bits
   EXPECT_EQ(read("b/curve.csv"), curve);
 }
 
+// A law that says its own I has it as a column in every kind of test; flow beyond what it is for is
+// a warning.
+TEST_F(PointCommand, a_critical_state_law_has_its_I_and_says_when_it_is_fast) {
+  const std::string file = write("t.toml", R"([law]
+name = "critical_state_mu_i"
+M = 0.888
+lambda = 0.0732
+kappa = 0.0282
+nu = 0.3
+Gamma = 2.759
+d = 1e-6
+M_inf = 1.154
+I_M = 1e-11
+I_v = 3e-10
+[initial]
+p = 1e5
+ocr = 1.5
+[test]
+kind = "triaxial"
+drainage = "undrained"
+axial_strain = 0.1
+rate = 1e-6
+)");
+  ASSERT_EQ(run(file, "slow"), 0);
+  const std::string curve = read("slow/curve.csv");
+  EXPECT_EQ(curve.substr(0, curve.find('\n')),
+            "time_s,eps_a,eps_r,eps_v,eps_q,p_Pa,q_Pa,sigma_a_Pa,sigma_r_Pa,u_Pa,v,p_c_Pa,I");
+  const auto slow = io::Json::parse(read("slow/summary.json"));
+  EXPECT_EQ(slow["method"], "cvode");
+  EXPECT_TRUE(slow["warnings"].empty()) << slow["warnings"];
+  ASSERT_EQ(run(file, "fast", {"test.rate=1e-3"}), 0);
+  const auto fast = io::Json::parse(read("fast/summary.json"));
+  ASSERT_GE(fast["warnings"].size(), 1u);
+  EXPECT_TRUE(contains(fast["warnings"][0].get<std::string>(), "of I_v: at constant volume"));
+}
+
 TEST_F(PointCommand, a_path_that_cannot_be_finished_leaves_the_part_done) {
   const std::string file = write("t.toml", good);
   EXPECT_EQ(run(file, "a",
