@@ -13,11 +13,14 @@ namespace {
 /// Points that share a step: arrays as a Batch wants them.
 class Points {
  public:
-  Points(const Material& material, std::size_t count, double p)
+  Points(const Material& material, std::size_t count, const ShearFlow& flow)
       : material_(&material),
         count_(count) {
     InitialConditions given;
-    given.p = p;
+    if (flow.v)
+      given.v = flow.v;
+    else
+      given.p = flow.p;
     const InitialPoint start = material.initial(given);
     for (std::size_t k = 0; k < 4; ++k) {
       strain_[k].assign(padded(count), 0.0);
@@ -86,15 +89,16 @@ class Points {
 };
 
 /// Shears all points alike until point 0 is steady: one long step, which takes an implicit update
-/// to the flow curve at once, then steps of dt until the stress has turned with the vorticity.
-void flow_steadily(Points& points, std::size_t count, const ShearFlow& flow, double dt) {
+/// to the flow curve at once, then short steps until the stress has turned with the vorticity.
+void flow_steadily(Points& points, std::size_t count, const ShearFlow& flow) {
+  const double dt = 1e-4 / flow.shear_rate;
   const auto shear = [&](double step) {
     for (std::size_t i = 0; i < count; ++i)
       points.set_gradient(i, flow.shear_rate, 0.0, 0.0, 0.0, 0.0, step);
     points.advance(step);
   };
   shear(1.0 / flow.shear_rate);
-  for (int n = 0; n < 20000; ++n) {
+  for (int n = 0; n < 200000; ++n) {
     const double before[3] = {points.stress(0, 0), points.stress(1, 0), points.stress(3, 0)};
     shear(dt);
     const double change = std::max({std::abs(points.stress(0, 0) - before[0]),
@@ -143,7 +147,7 @@ double step_of(Points& points, const Material& material, const ShearFlow& flow, 
 }  // namespace
 
 double flow_viscosity(const Material& material, const ShearFlow& flow) {
-  Points points(material, 1, flow.p);
+  Points points(material, 1, flow);
   points.set_gradient(0, flow.shear_rate, 0.0, 0.0, 0.0, 0.0, 1.0 / flow.shear_rate);
   points.advance(1.0 / flow.shear_rate);
   return std::hypot(points.stress(3, 0), 0.5 * (points.stress(0, 0) - points.stress(1, 0))) /
@@ -163,14 +167,14 @@ double wave_number_of_share(const Material& material, const ShearFlow& flow, dou
 std::vector<WaveGrowth> wave_growth(const Material& material, const ShearFlow& flow,
                                     double wave_number, std::size_t directions) {
   const std::size_t n = directions;
-  Points points(material, n + 1, flow.p);  // the last one is undisturbed
+  Points points(material, n + 1, flow);  // the last one is undisturbed
   const double k = wave_number;
   const auto [rho, K] = density_and_bulk_modulus(material, flow.p);
   const double viscous = viscous_rate(material, flow, k);
   const double share = viscous / (k * std::sqrt(K / rho));
-  const double dt = step_of(points, material, flow, k);
+  flow_steadily(points, n + 1, flow);
+  const double dt = step_of(points, material, flow, k);  // the flow may be stiffer than its start
   const double end = 20.0 * (1.0 + share * share) / viscous;
-  flow_steadily(points, n + 1, flow, dt);
 
   struct Noise {
     Wave wave;
@@ -231,12 +235,12 @@ std::vector<WaveGrowth> wave_growth(const Material& material, const ShearFlow& f
 std::vector<double> follow_wave(const Material& material, const ShearFlow& flow,
                                 const std::function<std::array<double, 2>(double t)>& wave_vector,
                                 double interval, std::size_t samples) {
-  Points points(material, 2, flow.p);
+  Points points(material, 2, flow);
   const double rho = material.density_at(flow.p, 1.0);
   const auto [kx, ky] = wave_vector(0.0);
   const double k = std::hypot(kx, ky), start = 1e-5 * flow.shear_rate / k;
+  flow_steadily(points, 2, flow);
   const double most = step_of(points, material, flow, k);
-  flow_steadily(points, 2, flow, most);
   Wave wave{kx, ky, start * ky / k, -start * kx / k};
   std::vector<double> log_size{0.0};
   const long steps = std::lround(std::ceil(interval / most));

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "models/material.hpp"
@@ -22,6 +23,9 @@ namespace repose::point {
 struct ShearFlow {
   double p;           ///< [Pa]
   double shear_rate;  ///< γ̇ [1/s]
+  /// Of a law whose volume depends on the rate: the specific volume of the flow at p and γ̇. It then
+  /// starts at rest at this volume.
+  std::optional<double> v{};
 };
 
 struct WaveGrowth {

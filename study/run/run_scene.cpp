@@ -387,6 +387,8 @@ io::ExitCode run_scene(const RunRequest& request) {
       const std::string damage = done ? folder.damage() : "";
       if (!damage.empty()) voice.warn(fmt::format("{}: {}", asked.folder.string(), damage));
       if (done && damage.empty()) {
+        // killed between its last file and the end of its claim: what is left of the lock goes
+        if (fs::exists(folder.file(".repose-lock"))) const io::FolderClaim claim(folder);
         voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});
         voice.say(fmt::format("{} is complete: nothing to resume\n", asked.folder.string()));
         return io::ExitCode::done;

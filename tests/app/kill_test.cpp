@@ -150,6 +150,18 @@ TEST(Killed, ADamagedCheckpointGivesWayToTheOneBeforeIt) {
   expect_same(result_of(folder / "damaged"), result_of(folder / "straight"), "damaged");
 }
 
+// Killed after its last file and before it has given the folder back, a run leaves its lock.
+TEST(Killed, WhatIsLeftOfTheLockGoes) {
+  const ScratchFolder scratch;
+  const fs::path& folder = scratch.path();
+  std::ofstream(folder / "scene.toml") << scene;
+  ASSERT_EQ(ended(start(folder, "run", false)), 0);
+  const auto done = result_of(folder / "run");
+  std::ofstream(folder / "run/.repose-lock") << "1\n";
+  ASSERT_EQ(ended(start(folder, "run", true)), 0);
+  expect_same(result_of(folder / "run"), done, "run");
+}
+
 TEST(Killed, TwoRunsIntoOneFolderAreRefused) {
   const ScratchFolder scratch;
   const fs::path& folder = scratch.path();

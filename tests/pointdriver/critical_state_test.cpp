@@ -128,6 +128,28 @@ TEST(CriticalState, UndrainedStrengthOverEightDecadesOfRate) {
   }
 }
 
+// The same drained: σ_r is kept, so p = 3p_0/(3 − η) at η = M M_I(I).
+TEST(CriticalState, DrainedStrengthOverEightDecadesOfRate) {
+  const Law law = kaolin();
+  const exact::CamClay c = london(false);
+  for (int decade = -12; decade <= -4; ++decade) {
+    Stage stage = triaxial(Condition::drained, 3.0, 10);
+    stage.rate = std::pow(10.0, decade);
+    const PointTest test = make_test({stage}, 100e3, 1.5, Method::automatic, 1e-11);
+    const Curve curve = run(law, test);
+    ASSERT_EQ(curve.outcome.status, Status::completed)
+        << decade << explain(*law.info, law.theta, test, curve);
+    const double p = column(law, test, curve, Quantity::p).back();
+    const double I = stage.rate * 1e-6 * std::sqrt(2650.0 / p);
+    const double eta = c.M * (1.0 + 0.3 * I / (1e-11 + I));
+    EXPECT_NEAR(p, 3.0 * 100e3 / (3.0 - eta), 1e-8 * p) << decade;
+    EXPECT_NEAR(column(law, test, curve, Quantity::q).back(), eta * p, 1e-8 * p) << decade;
+    EXPECT_NEAR(column(law, test, curve, Quantity::v).back(),
+                2.759 * std::pow(1e3 / p, c.lambda) * std::exp(I / 3e-10), 1e-7)
+        << decade;
+  }
+}
+
 // Shear at constant volume from I = 1e-8 to 1: μ(I) and φ(I).
 TEST(CriticalState, ConstantVolumeShearOverEightDecadesOfI) {
   const Grains g;
@@ -155,6 +177,36 @@ TEST(CriticalState, ConstantVolumeShearOverEightDecadesOfI) {
     EXPECT_NEAR(column(law, test, curve, Quantity::q).back(), g.M_of(I) * p, 1e-8 * p) << I;
     EXPECT_NEAR(column(law, test, curve, Quantity::I).back(), I, 1e-6 * I) << I;
     EXPECT_NEAR(column(law, test, curve, Quantity::p_c).back(), 2.0 * p, 1e-6 * p) << I;
+  }
+}
+
+// Shear at constant pressure up to I = 1, where the volume has grown by e: the rate is raised by steps
+// that dilation can follow (ΔI/(I_v(λ−κ)) of 0.7), and held at the end for 2.5, more than 20 times the
+// strain over which the volume follows.
+TEST(CriticalState, ConstantPressureShearUpToIOfOne) {
+  Grains g;
+  g.I_v = 1.0;
+  const Law law = g.law();
+  const double p = 1e3, per_I = root_3 / g.d * std::sqrt(p / g.rho_p);
+  for (const double I : {1e-8, 1e-6, 1e-4, 0.01, 0.1, 0.3, 1.0}) {
+    std::vector<Stage> stages;
+    const int steps = std::max(1, static_cast<int>(std::ceil(I / 0.0125)));
+    for (int k = 1; k <= steps; ++k) {
+      Stage shear;
+      shear.kind = Kind::simple_shear;
+      shear.condition = Condition::constant_p;
+      shear.rate = per_I * I * k / steps;
+      shear.goal = Goal{Quantity::gamma, k == steps ? 2.5 : 0.15, true};
+      shear.points = 2;
+      stages.push_back(shear);
+    }
+    const PointTest test = make_test(stages, p, 1.5, Method::automatic, 1e-10);
+    const Curve curve = run(law, test);
+    ASSERT_EQ(curve.outcome.status, Status::completed)
+        << I << explain(*law.info, law.theta, test, curve);
+    EXPECT_NEAR(column(law, test, curve, Quantity::I).back(), I, 1e-7 * I + 1e-15) << I;
+    EXPECT_NEAR(column(law, test, curve, Quantity::q).back(), g.M_of(I) * p, 1e-8 * p) << I;
+    EXPECT_NEAR(column(law, test, curve, Quantity::v).back() / g.v_of(p, I), 1.0, 1e-8) << I;
   }
 }
 

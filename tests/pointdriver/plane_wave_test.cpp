@@ -3,6 +3,9 @@
 
 #include "pointdriver/study/plane_wave.hpp"
 
+#include <cmath>
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "models/ill_posedness.hpp"
@@ -88,6 +91,57 @@ TEST(PlaneWave, AWaveThatIsFollowed) {
   };
   const std::vector<double> log_size = follow_wave(*material, flow, held, end / 20.0, 21);
   EXPECT_NEAR((log_size[20] - log_size[10]) / (0.5 * end), noise.rate, 0.01 * noise.rate);
+}
+
+/// Grains and clay of critical-state μ(I) (physics.md, CSM-11), sheared at I = share of I_M.
+struct CriticalState {
+  std::map<std::string, double> values;
+  double p = 1e5;
+  double rate_over_shear(double share_of_I_M, double share) const {
+    const auto material = make_material({"critical_state_mu_i", {}, values});
+    const auto value = [&](const char* name) { return values.at(name); };
+    const double I = share_of_I_M * value("I_M");
+    const double dilation = values.count("I_v") > 0 ? I / value("I_v") : 0.0;
+    const ShearFlow flow{
+        p, std::sqrt(3.0) * I / value("d") * std::sqrt(p / value("rho_p")),
+        value("Gamma") * std::pow(value("p_ref") / p, value("lambda")) * std::exp(dilation)};
+    const double k = wave_number_of_share(*material, flow, share);
+    return fastest(wave_growth(*material, flow, k, 32)).rate / flow.shear_rate;
+  }
+};
+CriticalState column(bool with_I_v) {
+  CriticalState law{{{"M", 0.6614},
+                     {"lambda", 0.0186},
+                     {"kappa", 0.001},
+                     {"nu", 0.3},
+                     {"Gamma", 1.5432},
+                     {"p_ref", 1.0},
+                     {"rho_p", 2000.0},
+                     {"M_inf", 0.9904},
+                     {"I_M", 0.1611},
+                     {"d", 0.0053}}};
+  if (with_I_v) law.values["I_v"] = 0.5;
+  return law;
+}
+
+// Without I_v the signs are those of the criterion of μ(I): well-posed for γ̇-numbers √3 I of 0.028
+// to 0.82, I/I_M of 0.1 to 2.9. Waves of half the frequency of sound: what the flow's own turning
+// adds is 0.3 γ̇ at 0.05 of it, and here some hundredths.
+TEST(PlaneWave, CriticalStateWithoutIvFollowsTheCriterion) {
+  const CriticalState law = column(false);
+  EXPECT_GT(law.rate_over_shear(0.003, 0.5), 1.0);
+  EXPECT_GT(law.rate_over_shear(0.03, 0.5), 0.5);
+  EXPECT_LT(law.rate_over_shear(0.3, 0.5), -0.5);
+  EXPECT_LT(law.rate_over_shear(0.6, 5.0), -1.0);
+}
+
+// A volume that depends on the rate damps short waves from √3 I = 0.008 on, where the friction alone
+// would let them grow.
+TEST(PlaneWave, RateInTheVolumeDampsShortWaves) {
+  EXPECT_GT(column(false).rate_over_shear(0.03, 5.0), 5.0);
+  EXPECT_LT(column(true).rate_over_shear(0.03, 5.0), -100.0);
+  EXPECT_LT(column(true).rate_over_shear(0.6, 5.0), -10.0);
+  EXPECT_GT(column(true).rate_over_shear(0.003, 5.0), 1.0) << "not of slow flow";
 }
 
 TEST(PlaneWave, ViscosityOfTheFlow) {
