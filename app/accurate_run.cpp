@@ -243,7 +243,8 @@ class AccuracyCommand {
                           bar_text(estimate.error))
             : fmt::format("{} = {:.4g} ± {:.2g} {} ({})", quantity(), estimate.value[0],
                           estimate.error * std::abs(estimate.value[0]),
-                          study::unit_of(request_.quantity, scene().dimensions()), bar_text(estimate.error));
+                          study::unit_of(request_.quantity, scene().dimensions()),
+                          bar_text(estimate.error));
     say(fmt::format(
         "  {}; {}\n{}"
         "  from all runs; cells of {:.4g} mm alone are about {} off\n"

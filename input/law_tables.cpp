@@ -103,12 +103,16 @@ std::string law_description(std::string_view name) {
       rows.push_back({std::string(p.symbol), std::string(p.name), std::string(p.unit),
                       default_text(p), to_string(p.range), std::string(p.doc)});
     out += aligned(rows, "  ");
-    if (info->state.empty()) continue;
-    std::vector<Row> state{{"STATE", "KEY", "UNIT", "MEANING"}};
-    for (const StateField& s : info->state)
-      state.push_back(
-          {std::string(s.symbol), std::string(s.name), std::string(s.unit), std::string(s.doc)});
-    out += '\n' + aligned(state, "  ");
+    const auto list = [&](const char* heading, std::span<const StateField> fields) {
+      if (fields.empty()) return;
+      std::vector<Row> table{{heading, "KEY", "UNIT", "MEANING"}};
+      for (const StateField& s : fields)
+        table.push_back(
+            {std::string(s.symbol), std::string(s.name), std::string(s.unit), std::string(s.doc)});
+      out += '\n' + aligned(table, "  ");
+    };
+    list("STATE", info->state);
+    list("OUTPUT", info->derived);
   }
   return out;
 }
@@ -132,10 +136,13 @@ std::string laws_as_json(std::string_view name) {
                                    {"lower_open", p.range.lower_open},
                                    {"upper_open", p.range.upper_open},
                                    {"doc", p.doc}});
-    law["state"] = Json::array();
-    for (const StateField& s : info->state)
-      law["state"].push_back(
-          {{"key", s.name}, {"symbol", s.symbol}, {"unit", s.unit}, {"doc", s.doc}});
+    for (const auto& [key, fields] :
+         {std::pair{"state", info->state}, std::pair{"output", info->derived}}) {
+      law[key] = Json::array();
+      for (const StateField& s : fields)
+        law[key].push_back(
+            {{"key", s.name}, {"symbol", s.symbol}, {"unit", s.unit}, {"doc", s.doc}});
+    }
     laws.push_back(std::move(law));
   }
   return laws.dump(2) + "\n";

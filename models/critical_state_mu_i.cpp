@@ -29,11 +29,11 @@ InitialPoint CriticalStateMuI::initial(const Params<double>& P, const InitialCon
   const double p = pressure(point.stress);
   const double on_lines = Clay::density_at(P.clay(), p, p_c / p);
   if (!(std::abs(point.density / on_lines - 1.0) <= 1e-6))
-    throw InputError(given.v ? "v" : "density",
-                     "the initial state says p, p_c and v, and any two of them give the third: v = " +
-                         std::to_string(P.rho_p / point.density) +
-                         ", and on the law's lines it is " + std::to_string(P.rho_p / on_lines) +
-                         "; leave out v, or ocr, or p");
+    throw InputError(
+        given.v ? "v" : "density",
+        "the initial state says p, p_c and v, and any two of them give the third: v = " +
+            std::to_string(P.rho_p / point.density) + ", and on the law's lines it is " +
+            std::to_string(P.rho_p / on_lines) + "; leave out v, or ocr, or p");
   point.density = on_lines;
   return point;
 }

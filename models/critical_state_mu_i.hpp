@@ -170,8 +170,8 @@ struct CriticalStateMuI {
     return Clay::elastic_volume_strain(P.clay(), stress, bearing(stress, at), density);
   }
 
-  /// The state as the law at rest has it, for what does not ask for p_c. Whatever carries a pressure
-  /// bears: a solver of differential equations may leave round-off in ρ_sep.
+  /// The state as the law at rest has it, for what does not ask for p_c. Whatever carries a
+  /// pressure bears: a solver of differential equations may leave round-off in ρ_sep.
   template <class T, int N>
   static Clay::State<T> bearing(const Sym<T, N>& stress, const State<T>& at) {
     return {T(1.0), select(pressure(stress) > T(0.0), T(0.0), at[i_rho_sep])};

@@ -15,22 +15,22 @@ namespace repose {
 /// in the unknowns t ≥ 0 and w, which are to satisfy
 ///     volume   (1 − e^{−t})(1 − e^θ) = a w e^{w−t},  a = 3Gκ/(M²p_tr)                (CSM-3)
 ///     surface  Ψ = ln{½[1 + Q²]} − θ = 0,  Q = q/(M M_I p) = η e^{w−t}/M_I           (CSM-1)
-/// For every t > 0 one w satisfies the first (left side less right one, times e^{−w}, falls with w);
-/// it lies between 0 and the w of θ = 0. Along these Ψ goes from its value at the trial state, > 0
-/// where that lies beyond the surface at rest, to −ln 2: a root, for any step.
+/// For every t > 0 one w satisfies the first (left side less right one, times e^{−w}, falls with
+/// w); it lies between 0 and the w of θ = 0. Along these Ψ goes from its value at the trial state,
+/// > 0 where that lies beyond the surface at rest, to −ln 2: a root, for any step.
 ///
 /// With u = a w e^{w−t}/(1 − e^{−t}) the first is written so that it is nearly linear in w however
 /// far p_s is from p:
 ///     wet (θ < 0 at w = 0):  V = ln(e^θ + u) = 0;   dry:  V = θ − ln(1 − u) = 0.
 template <class T>
 struct CriticalStateReturn {
-  T eta;       ///< q_tr/(M p_tr)
-  T ell;       ///< ln(p_s/p_tr) at I = 0 before the step
-  T r, j;      ///< κ/(λ−κ), 1/(I_v(λ−κ))
-  T c, a;      ///< as above
-  T growth;    ///< M_∞/M − 1
+  T eta;     ///< q_tr/(M p_tr)
+  T ell;     ///< ln(p_s/p_tr) at I = 0 before the step
+  T r, j;    ///< κ/(λ−κ), 1/(I_v(λ−κ))
+  T c, a;    ///< as above
+  T growth;  ///< M_∞/M − 1
   T I_M;
-  T b;         ///< ln(p_tr/p_b), 0 but for huge steps
+  T b;          ///< ln(p_tr/p_b), 0 but for huge steps
   T c_at_rest;  ///< c e^{−b/2}: I = c_at_rest (1 − e^{−t}) at w = 0
   T inv_slope;  ///< 1/(1 + r)
 
@@ -46,7 +46,8 @@ struct CriticalStateReturn {
     const ExpPair<T> e_t = exp_pair(T(-t));
     const T& X = e_t.whole;
     const T share = -e_t.minus_one;  // 1 − e^{−t}
-    // I rises with w, so that θ does at least at the slope 1 + r: it is 0 between w = 0 and this end
+    // I rises with w, so that θ does at least at the slope 1 + r: it is 0 between w = 0 and this
+    // end
     const T theta_0 = ell + j * c_at_rest * share;
     const auto dry = theta_0 > zero;
     const T end = -theta_0 * inv_slope;
@@ -128,7 +129,8 @@ struct CriticalStateReturn {
     const T log_z = ln(T(one + select(z > zero, z, zero)));
     const T about_z = log_z * (one - ln(T(one + log_z)) / (T(2.0) + log_z));
     // not beyond where jI alone would bring θ to 0
-    const T most = T(-2.0) * ln(T(j * c_at_rest * e_t.minus_one / select(ell < zero, ell, T(-one))));
+    const T most =
+        T(-2.0) * ln(T(j * c_at_rest * e_t.minus_one / select(ell < zero, ell, T(-one))));
     const T wet = select(about_z < most, about_z, most);
     const T dry = T(-0.5) * theta_0 / (one + r + T(0.5) * j * c_at_rest * -e_t.minus_one);
     const T far = select(theta_0 > zero, select(z > dry, z, dry), wet);
@@ -169,8 +171,8 @@ T volume_at(const CriticalStateReturn<T>& eq, const T& t, int* evaluations = nul
     low = select(open && negated(above), w, low);
     const T candidate = w - x.V / x.V_w;
     const T jump = candidate - w;
-    const auto good = candidate >= low && candidate <= high &&
-                      jump * jump < T(0.25) * last_move * last_move;
+    const auto good =
+        candidate >= low && candidate <= high && jump * jump < T(0.25) * last_move * last_move;
     const T next = select(good, candidate, T(T(0.5) * (low + high)));
     last_move = select(open, T(next - w), last_move);
     w = select(open, next, w);
@@ -179,13 +181,12 @@ T volume_at(const CriticalStateReturn<T>& eq, const T& t, int* evaluations = nul
   return w;
 }
 
-/// The root nearest to the trial state (the smallest t), for the lanes marked in `active`; those for
-/// which none is found stay marked. Newton's method in both unknowns from the step that it makes at
-/// t = 0; Ψ falls and is convex along V = 0 but for rare cases, so that it comes from the left.
-/// Lanes that do not get there in a few steps are bracketed in t, V = 0 solved at every t.
+/// The root nearest to the trial state (the smallest t), for the lanes marked in `active`; those
+/// for which none is found stay marked. Newton's method in both unknowns from the step that it
+/// makes at t = 0; Ψ falls and is convex along V = 0 but for rare cases, so that it comes from the
+/// left. Lanes that do not get there in a few steps are bracketed in t, V = 0 solved at every t.
 template <class T>
-FlowEnd<T> flow_end(const CriticalStateReturn<T>& eq, Mask<T>& active,
-                    int* evaluations = nullptr) {
+FlowEnd<T> flow_end(const CriticalStateReturn<T>& eq, Mask<T>& active, int* evaluations = nullptr) {
   constexpr int fast_steps = 16;
   const T zero(0.0), one(1.0), half(0.5);
   const auto size = [&](const T& y) { return select(y > zero, y, T(-y)); };
@@ -334,7 +335,8 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
   const ExpPair<T> growth = exp_pair(x_base);
   const T p_trial = p_n * growth.whole;
   T mean_growth = expm1_over(x_base, growth);
-  if (any(x_trial > T(30.0))) mean_growth = select(x_trial > T(30.0), expm1_over(T(30.0)), mean_growth);
+  if (any(x_trial > T(30.0)))
+    mean_growth = select(x_trial > T(30.0), expm1_over(T(30.0)), mean_growth);
   const T G = g_n * mean_growth;
   const T Q0 = T(1.5) * contract(s_n, s_n);
   const T Q1 = T(6.0) * contract(s_n, strain_dev);
@@ -344,8 +346,8 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
   const T p_c_n = exp_pair(ln_p_c_n).whole;
   const T F = q2_M2 - p_trial * (p_c_n - p_trial);  // CSM-1 at I = 0
   const T round_off(16.0 * std::numeric_limits<double>::epsilon());
-  const auto yields = touching && inc.dt > zero &&
-                      F - round_off * (q2_M2 + p_trial * (p_c_n + p_trial)) > zero;
+  const auto yields =
+      touching && inc.dt > zero && F - round_off * (q2_M2 + p_trial * (p_c_n + p_trial)) > zero;
   // a point at rest keeps its stress to the last bit
   const auto moving = apart || size > zero || yields;
 
@@ -353,11 +355,10 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
   T x = x_trial;  // ln(p/p_n)
   T ln_p_c = ln_p_c_n;
   T q_ratio = one;
-  Mask<T> failed = negated(finite(strain_total) && finite(size) &&
-                           finite(T(contract(stress, stress))) && finite(F) && inc.dt >= zero &&
-                           finite(T(inc.density + at[i_rho_sep])) && inc.density > zero &&
-                           p_n > zero && finite(ln_p_c_n) &&
-                           (inc.dt > zero || negated(beyond_numbers)));
+  Mask<T> failed = negated(
+      finite(strain_total) && finite(size) && finite(T(contract(stress, stress))) && finite(F) &&
+      inc.dt >= zero && finite(T(inc.density + at[i_rho_sep])) && inc.density > zero &&
+      p_n > zero && finite(ln_p_c_n) && (inc.dt > zero || negated(beyond_numbers)));
   // what would leave e^{−200} of p_n parts without flowing
   const auto flows = yields && !failed && x_trial > T(-200.0);
   if (any(flows)) {
@@ -387,7 +388,8 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
       // solve on values, then differentiate the root by one Newton step in T
       const auto root = flow_end(eq.values(), active, evaluations);
       auto x_root = eq.at(T(root.t), T(root.w));
-      for (T* const residual : {&x_root.V, &x_root.Psi}) *residual = *residual - T(value(*residual));
+      for (T* const residual : {&x_root.V, &x_root.Psi})
+        *residual = *residual - T(value(*residual));
       T t_step, w_step;
       eq.newton(x_root, t_step, w_step);
       end.t = T(root.t) + t_step;
@@ -534,8 +536,8 @@ void CriticalStateMuI::rate(const Params<T>& P, const Sym<T, N>& stress, const S
     return;
   }
   const T I = flow_number(P, stress, at);
-  const T flow_q = I * sqrt(T(p / P.rho_p)) / P.d;                    // ε̇_q^p
-  const T Q = q / (P.M * friction_growth(P, I) * p);                  // p_s = ½p(1 + Q²)
+  const T flow_q = I * sqrt(T(p / P.rho_p)) / P.d;    // ε̇_q^p
+  const T Q = q / (P.M * friction_growth(P, I) * p);  // p_s = ½p(1 + Q²)
   const T flow_v = square(P.M) * p * (T(1.0) - Q * Q) / (T(2.0) * q) * flow_q;  // CSM-3
   const T K = p / P.kappa;
   const T two_G = T(2.0) * P.shear_ratio() * K;

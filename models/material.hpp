@@ -47,7 +47,7 @@ struct LawInfo {
   std::string_view doc;
   std::span<const ParamInfo> parameters;
   std::span<const StateField> state;
-  bool has_stress_memory;  ///< the stress at the start of a step matters
+  bool has_stress_memory;                 ///< the stress at the start of a step matters
   std::span<const StateField> derived{};  ///< variables that follow from the state, for output
 };
 

@@ -121,8 +121,7 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
   double p_c = 0.0;
   if (!states_stress(given)) {
     // v and ocr on the compression line give p
-    if (!v)
-      throw InputError("p", std::string(law) + " needs an initial p, sigma, v or density");
+    if (!v) throw InputError("p", std::string(law) + " needs an initial p, sigma, v or density");
     if (!has_line) throw InputError("Gamma", "finding p from the specific volume needs Gamma or N");
     if (given.ocr_v && P.p_shift > 0.0)
       throw InputError("ocr_v", "with p_shift, ocr_v needs an initial p, sigma_v or sigma");

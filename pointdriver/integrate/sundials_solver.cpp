@@ -103,8 +103,8 @@ int fired(const std::vector<int>& flags) {
   return -1;
 }
 
-/// Of one step, before a solver gives up. The default of 7 to 10 lets a step shrink by some 5 decades;
-/// where the flow of a slow test sets in, it must by more.
+/// Of one step, before a solver gives up. The default of 7 to 10 lets a step shrink by some 5
+/// decades; where the flow of a slow test sets in, it must by more.
 constexpr int most_failures = 40;
 
 class Cvode final : public SundialsSolver {
@@ -122,9 +122,9 @@ class Cvode final : public SundialsSolver {
     check(CVodeWFtolerances(memory_, weight_callback));
     if (stiff) {
       check(CVodeSetLinearSolver(memory_, work_.linear, work_.matrix));
-      // A Jacobian that is some steps old may be far too stiff (the flow of a critical-state law sets
-      // in at a rate like 1/q): Newton's corrections are then too small, pass for convergence, and
-      // the solution is 1e-3 off at a tolerance of 1e-10. A fresh one takes fewer steps, too.
+      // A Jacobian that is some steps old may be far too stiff (the flow of a critical-state law
+      // sets in at a rate like 1/q): Newton's corrections are then too small, pass for convergence,
+      // and the solution is 1e-3 off at a tolerance of 1e-10. A fresh one takes fewer steps, too.
       check(CVodeSetLSetupFrequency(memory_, 1));
       check(CVodeSetJacEvalFrequency(memory_, 1));
     } else {

@@ -95,9 +95,9 @@ struct Readout {
   T rho_p{std::numeric_limits<double>::quiet_NaN()};  ///< grain density, NaN if the law has none
   T d{std::numeric_limits<double>::quiet_NaN()};      ///< grain size, NaN if the law has none
   int p_c_index = -1;                                 ///< variable "p_c", -1 if none
-  int I_index = -1;  ///< variable "I", -1 if none: I is then that of the strain rate
-  T sigma_r_start{0.0};                               ///< radial stress where u is 0 [Pa]
-  int first_undrained = 0;                            ///< before this leg u is 0
+  int I_index = -1;         ///< variable "I", -1 if none: I is then that of the strain rate
+  T sigma_r_start{0.0};     ///< radial stress where u is 0 [Pa]
+  int first_undrained = 0;  ///< before this leg u is 0
   StrainMeasure measure = StrainMeasure::logarithmic;  ///< of ε_a, ε_r, ε_v and, with an axis, ε_q
   Sym<T, 6> stage_strain{};  ///< where the strains of the present stage count from (log.)
 };

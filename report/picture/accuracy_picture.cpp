@@ -34,7 +34,8 @@ Figure accuracy_picture(const std::vector<study::SweepRun>& runs, study::Quantit
   }
   axes.x = {"cell size (mm)", AxisScale::linear, 0.0, 1.08e3 * levels.front().h};
   axes.x.lower = -0.04e3 * levels.front().h;
-  axes.y.label = fmt::format("{} ({})", study::name_of(q), study::unit_of(q, runs.back().scene().dimensions()));
+  axes.y.label = fmt::format("{} ({})", study::name_of(q),
+                             study::unit_of(q, runs.back().scene().dimensions()));
   std::vector<double> h, value, mean_h, mean;
   for (const study::SweepRun& run : runs) {
     h.push_back(1e3 * run.scene().h);

@@ -163,17 +163,18 @@ Figure step_figure(const std::vector<study::SweepSeries>& series, const std::str
     return std::nan("");
   };
   const std::string_view energy = energy_unit(series);
-  std::vector<Row> rows{{step, {"front at the end (m)"}, dt, named("front_m")},
-                        {step, {"front of 99 % of the mass (m)"}, dt, named("front_99_m")},
-                        {step, {"height at the wall (m)"}, dt, named("height_m")},
-                        {step,
-                         {fmt::format("kinetic energy at the end ({})", energy), AxisScale::logarithmic},
-                         dt,
-                         named("kinetic_J_per_m")},
-                        {{"CPU time (s)", AxisScale::logarithmic},
-                         {"largest change of depth (% of H_{0})", AxisScale::logarithmic},
-                         named("cpu_s"),
-                         change}};
+  std::vector<Row> rows{
+      {step, {"front at the end (m)"}, dt, named("front_m")},
+      {step, {"front of 99 % of the mass (m)"}, dt, named("front_99_m")},
+      {step, {"height at the wall (m)"}, dt, named("height_m")},
+      {step,
+       {fmt::format("kinetic energy at the end ({})", energy), AxisScale::logarithmic},
+       dt,
+       named("kinetic_J_per_m")},
+      {{"CPU time (s)", AxisScale::logarithmic},
+       {"largest change of depth (% of H_{0})", AxisScale::logarithmic},
+       named("cpu_s"),
+       change}};
   for (std::size_t r = 0; r < rows.size(); ++r) {
     Row& row = rows[r];
     std::vector<double> ys;

@@ -186,11 +186,12 @@ std::string answer_text(const Json& answer) {
       text += "no run came to its end\n";
       continue;
     }
-    text += fmt::format(
-        "{:<14} {:<16} {:<16} {:<16} {:<18} {:<14} ", pair(line, "mean_dt_s", 1e6, "{:.4g}"),
-        pair(line, "front_m", 1.0, "{:.4f}"), pair(line, "front_99_m", 1.0, "{:.4f}"),
-        pair(line, "height_m", 1.0, "{:.4f}"), pair(line, in_space ? "kinetic_J" : "kinetic_J_per_m", 1.0, "{:.2g}"),
-        pair(line, "cpu_s", 1.0, "{:.2g}"));
+    text +=
+        fmt::format("{:<14} {:<16} {:<16} {:<16} {:<18} {:<14} ",
+                    pair(line, "mean_dt_s", 1e6, "{:.4g}"), pair(line, "front_m", 1.0, "{:.4f}"),
+                    pair(line, "front_99_m", 1.0, "{:.4f}"), pair(line, "height_m", 1.0, "{:.4f}"),
+                    pair(line, in_space ? "kinetic_J" : "kinetic_J_per_m", 1.0, "{:.2g}"),
+                    pair(line, "cpu_s", 1.0, "{:.2g}"));
     const Json& change = line["change_when_quartered"];
     if (change.is_object())
       text += fmt::format("{:.2f}, {:.2f}, {:.2f}, {:.2f} %{}", 100.0 * number(change["front"]),

@@ -40,15 +40,15 @@ std::vector<std::string> remarks(const input::PointTestFile& file, const TestRes
   const int i = point::parameter_index(result.law->parameters, "I_v");
   const double I_v = i < 0 ? std::nan("") : result.theta[static_cast<std::size_t>(i)];
   if (I_v < 1e-3 && fastest > 0.05 * I_v)
-    found.push_back(
-        fmt::format("I reaches {:.2g} of I_v: at constant volume the pressure of so fast a clay grows like the "
-                    "square of its rate; up to 0.05 the effect is one of some per cent",
-                    fastest / I_v));
+    found.push_back(fmt::format(
+        "I reaches {:.2g} of I_v: at constant volume the pressure of so fast a clay grows like the "
+        "square of its rate; up to 0.05 the effect is one of some per cent",
+        fastest / I_v));
   if (steepest > 3.0)
-    found.push_back(
-        fmt::format("q/p reaches {:.3g}: above 3 a principal stress is tension. A jump of the rate at constant "
-                    "pressure does that, until dilation has caught up",
-                    steepest));
+    found.push_back(fmt::format(
+        "q/p reaches {:.3g}: above 3 a principal stress is tension. A jump of the rate at constant "
+        "pressure does that, until dilation has caught up",
+        steepest));
   return found;
 }
 

@@ -135,11 +135,19 @@ TEST_F(CommandTest, Models) {
   EXPECT_NE(law.out.find("\n  ρ_0     rho_0  kg/m³  required  > 0    bulk density at p = 0\n"),
             std::string::npos)
       << law.out;
+  // what follows from the state is listed under a heading of its own
+  const Outcome both = run({"models", "critical_state_mu_i"});
+  EXPECT_NE(both.out.find("\n  OUTPUT  KEY  UNIT  MEANING\n  p_c     p_c  Pa "), std::string::npos)
+      << both.out;
+  EXPECT_EQ(
+      Json::parse(run({"models", "critical_state_mu_i", "--json"}).out)[0]["output"][1]["key"],
+      "I");
   const Outcome unknown = run({"models", "mu_j"});
   EXPECT_EQ(unknown.exit, 2);
   EXPECT_EQ(unknown.err,
             "repose models: unknown law \"mu_j\"; did you mean \"mu_i\"? (known: "
-            "\"modified_cam_clay\", \"mu_i\", \"newtonian\", \"neo_hookean\", \"critical_state_mu_i\")\n");
+            "\"modified_cam_clay\", \"mu_i\", \"newtonian\", \"neo_hookean\", "
+            "\"critical_state_mu_i\")\n");
   EXPECT_TRUE(Json::parse(run({"models", "mu_i", "--json"}).out).is_array());
 }
 

@@ -53,7 +53,8 @@ TYPED_TEST(BatchRotation, FullTurnKeepsTheInvariants) {
         EXPECT_NEAR(mises(after), mises(before), 2.0 * tolerance) << example.label;
         // A stress on its yield surface may be turned out of it by that much: where that flows, the
         // hardening follows, d ln p_c = d ln p at most.
-        const double flow = requires { L::rate_dependent; } ? 2.0 * tolerance / pressure(before) : 0.0;
+        const double flow = requires { L::rate_dependent; }
+        ? 2.0 * tolerance / pressure(before) : 0.0;
         for (std::size_t k = 0; k < L::state.size(); ++k)
           EXPECT_NEAR(columns.point(i).state[k], start[i].state[k], flow * start[i].state[k])
               << example.label;

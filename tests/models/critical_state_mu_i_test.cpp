@@ -71,8 +71,9 @@ TEST(CriticalStateMuI, AReturnSatisfiesItsEquationsOverEighteenDecadesOfTime) {
       const Point before = point;
       const Increment<double, 6> inc{strain, dt, point.density * std::exp(-trace(strain))};
       int count = 0;
-      ASSERT_FALSE(Law::update(P, inc, point.stress, point.state, static_cast<StepWork<double>*>(nullptr),
-                               &count)) << k;
+      ASSERT_FALSE(Law::update(P, inc, point.stress, point.state,
+                               static_cast<StepWork<double>*>(nullptr), &count))
+          << k;
       if (count == 0 || point.apart()) continue;
       ++plastic;
       evaluations.push_back(count);

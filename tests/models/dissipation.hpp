@@ -82,8 +82,8 @@ Dissipated dissipated(const typename L::template Params<double>& P, const LawPoi
     const double with_mean = V1 * (contract(s1, s1) - contract(s0, s0)) / (4.0 * G_mean);
     rest += with_G - with_mean;
     const double a = kappa_step * x;
-    const double hardened = is_at_rest ? std::log(after.state[0] / before.state[0])
-                                       : after.state[0] - before.state[0];
+    const double hardened =
+        is_at_rest ? std::log(after.state[0] / before.state[0]) : after.state[0] - before.state[0];
     const double z = kappa_step * (P.lambda / P.kappa - 1.0) * hardened;
     const double psi0 = energy(before) / V0 - shear_energy(before, s0) / V0;
     if (z < 0.0) slack = -z * (V1 * std::abs(std::expm1(a)) * p1 + V1 * std::exp(a) * psi0);

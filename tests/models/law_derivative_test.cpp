@@ -139,7 +139,8 @@ TYPED_TEST(LawDerivative, SensitivityToEveryParameterAlongAPath) {
       if constexpr (L::state.size() > 0) {
         EXPECT_GT(plastic, 2) << example.label;
         // (flow goes on while the stress is beyond yield, also on the way back)
-        const int most = requires { L::rate_dependent; } ? 20 : 19;
+        const int most = requires { L::rate_dependent; }
+        ? 20 : 19;
         EXPECT_LE(plastic, most) << example.label;
       }
 

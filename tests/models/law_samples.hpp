@@ -72,15 +72,15 @@ inline std::vector<LawExample> examples_of(const LawInfo& law) {
   }
   if (name == "critical_state_mu_i") {
     // the column's clay at rest and its grains in flow: M_∞ = √3 μ_d, I_M = I_0/√3
-    Values grains{{"M", 0.6614},  {"lambda", 0.0186},      {"kappa", 0.001},   {"nu", 0.3},
-                  {"p_ref", 1.0}, {"Gamma", 1.0 / 0.648},  {"rho_p", 2000.0},  {"d", 0.0053},
-                  {"I_v", 0.5},   {"M_inf", 0.9904},       {"I_M", 0.1611}};
+    Values grains{{"M", 0.6614},  {"lambda", 0.0186},     {"kappa", 0.001},  {"nu", 0.3},
+                  {"p_ref", 1.0}, {"Gamma", 1.0 / 0.648}, {"rho_p", 2000.0}, {"d", 0.0053},
+                  {"I_v", 0.5},   {"M_inf", 0.9904},      {"I_M", 0.1611}};
     list.push_back({"column", spec(grains), 1e3, 1e-3, 1e-4});
     grains.erase("I_v");
     list.push_back({"column_of_one_volume", spec(grains), 1e3, 1e-3, 1e-4});
-    const Values kaolin{{"M", 0.888},   {"lambda", 0.161 / 2.2}, {"kappa", 0.062 / 2.2},
-                        {"nu", 0.3},    {"Gamma", 2.759},        {"p_ref", 1e3},
-                        {"d", 1e-6},    {"M_inf", 1.3 * 0.888},  {"I_M", 1e-11},
+    const Values kaolin{{"M", 0.888},  {"lambda", 0.161 / 2.2}, {"kappa", 0.062 / 2.2},
+                        {"nu", 0.3},   {"Gamma", 2.759},        {"p_ref", 1e3},
+                        {"d", 1e-6},   {"M_inf", 1.3 * 0.888},  {"I_M", 1e-11},
                         {"I_v", 3e-10}};
     list.push_back({"kaolin", spec(kaolin), 1e5, 2e-2, 1e3});
   }

@@ -1,6 +1,6 @@
 /// \file
-/// A whole collapse of critical-state μ(I) (physics.md, CSM): every point on the law's own lines all
-/// the time, rest on a flat floor, flow that goes on where the slope is above its friction.
+/// A whole collapse of critical-state μ(I) (physics.md, CSM): every point on the law's own lines
+/// all the time, rest on a flat floor, flow that goes on where the slope is above its friction.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,8 @@ TEST(CriticalStateCollapse, EveryPointKeepsTheStateRelationAndComesToRest) {
   EXPECT_GT(end.height_m, 0.1) << "and keeps a heap";
 }
 
-// tan 35° = 0.70 is above μ_d = 0.57: what reaches the far wall is still in motion, and so is the rest.
+// tan 35° = 0.70 is above μ_d = 0.57: what reaches the far wall is still in motion, and so is the
+// rest.
 TEST(CriticalStateCollapse, KeepsFlowingDownASteepSlope) {
   const Scene scene = collapse(0.5, 35.0);
   Simulation simulation(scene, 2);

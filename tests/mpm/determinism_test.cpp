@@ -34,7 +34,8 @@ Scene everything(Kernel kernel) {
     body.spin = k - 2.0;
     scene.bodies.push_back(body);
   }
-  Body both = block(0.0125, 0.0, 0.0625, 0.1, critical_state());  // beside the others: a column that slumps
+  Body both =
+      block(0.0125, 0.0, 0.0625, 0.1, critical_state());  // beside the others: a column that slumps
   scene.bodies.push_back(both);
   scene.bodies[2].velocity[0] = 6.0;  // leaves at once
   return scene;

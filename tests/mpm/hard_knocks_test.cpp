@@ -113,7 +113,8 @@ Scene small_collapse(const LawSpec& law) {
 // Ten times the step for which the waves allow: a failure within some steps of the first impact
 // that names step, dt and the input as cause.
 TEST(DivergenceTest, AStepBeyondTheWaveLimitIsTheInputsFault) {
-  for (const LawSpec& law : {newtonian(0.002, 26000.0, 7.0, 1300.0), mu_i(), cam_clay(), critical_state()})
+  for (const LawSpec& law :
+       {newtonian(0.002, 26000.0, 7.0, 1300.0), mu_i(), cam_clay(), critical_state()})
     for (const double factor : {10.0, 1000.0}) {
       Scene scene = small_collapse(law);
       scene.dt = factor * Simulation(scene, 1).next_dt() / scene.courant;
@@ -164,7 +165,8 @@ TEST(DivergenceTest, IsSeenWhereItStarts) {
 
 // A failed state can be written, read and stepped without harm: it fails again, or goes on.
 TEST(DivergenceTest, AFailedStateCanBeSaved) {
-  for (const LawSpec& law : {newtonian(0.002, 26000.0, 7.0, 1300.0), mu_i(), cam_clay(), critical_state()})
+  for (const LawSpec& law :
+       {newtonian(0.002, 26000.0, 7.0, 1300.0), mu_i(), cam_clay(), critical_state()})
     for (const double factor : {10.0, 1e3, 1e12}) {
       Scene scene = small_collapse(law);
       scene.dt = factor * Simulation(scene, 1).next_dt() / scene.courant;

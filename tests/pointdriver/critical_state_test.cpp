@@ -47,9 +47,7 @@ struct Grains {
                       {"d", d}}});
   }
   double M_of(double I) const { return M + (M_inf - M) * I / (I_M + I); }
-  double v_of(double p, double I) const {
-    return Gamma * std::pow(p, -lambda) * std::exp(I / I_v);
-  }
+  double v_of(double p, double I) const { return Gamma * std::pow(p, -lambda) * std::exp(I / I_v); }
 };
 
 PointTest slow(Stage stage, double ocr, Method method = Method::automatic) {
@@ -72,7 +70,8 @@ TEST(CriticalState, SlowTestsAreCamClay) {
       const Curve curve = run(law, test);
       ASSERT_EQ(curve.outcome.status, Status::completed)
           << ocr << explain(*law.info, law.theta, test, curve);
-      const auto p = column(law, test, curve, Quantity::p), q = column(law, test, curve, Quantity::q);
+      const auto p = column(law, test, curve, Quantity::p),
+                 q = column(law, test, curve, Quantity::q);
       const auto eps_a = column(law, test, curve, Quantity::eps_a);
       if (condition == Condition::drained && ocr > 2.0) continue;  // softens: no closed form here
       for (std::size_t i = 1; i < p.size(); ++i) {
@@ -180,9 +179,9 @@ TEST(CriticalState, ConstantVolumeShearOverEightDecadesOfI) {
   }
 }
 
-// Shear at constant pressure up to I = 1, where the volume has grown by e: the rate is raised by steps
-// that dilation can follow (ΔI/(I_v(λ−κ)) of 0.7), and held at the end for 2.5, more than 20 times the
-// strain over which the volume follows.
+// Shear at constant pressure up to I = 1, where the volume has grown by e: the rate is raised by
+// steps that dilation can follow (ΔI/(I_v(λ−κ)) of 0.7), and held at the end for 2.5, more than 20
+// times the strain over which the volume follows.
 TEST(CriticalState, ConstantPressureShearUpToIOfOne) {
   Grains g;
   g.I_v = 1.0;
@@ -263,7 +262,8 @@ TEST(CriticalState, RowsObeyTheStateRelation) {
   const PointTest test = make_test({shear}, 1e3, 1.2, Method::automatic);
   const Curve curve = run(law, test);
   ASSERT_EQ(curve.outcome.status, Status::completed);
-  const auto p = column(law, test, curve, Quantity::p), p_c = column(law, test, curve, Quantity::p_c);
+  const auto p = column(law, test, curve, Quantity::p),
+             p_c = column(law, test, curve, Quantity::p_c);
   const auto I = column(law, test, curve, Quantity::I), v = column(law, test, curve, Quantity::v);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double on_lines = g.v_of(0.5 * p_c[i], I[i]) * std::pow(0.5 * p_c[i] / p[i], g.kappa);
@@ -329,7 +329,8 @@ TEST(CriticalState, AJumpOfTheRateAtConstantPressure) {
   shear.rate = 10.0;
   for (const Method method : {Method::adaptive, Method::cvode}) {
     PointTest jump = make_test({shear}, 1e3, 1.0, method, 1e-8);
-    if (method == Method::cvode) jump.settings.max_steps = 2000;  // it goes after the blow-up longer
+    if (method == Method::cvode)
+      jump.settings.max_steps = 2000;  // it goes after the blow-up longer
     const Curve curve = run(law, jump);
     EXPECT_TRUE(is_failure(curve.outcome.status)) << name_of(method);
     if (method == Method::adaptive) {

@@ -135,8 +135,8 @@ TEST(PlaneWave, CriticalStateWithoutIvFollowsTheCriterion) {
   EXPECT_LT(law.rate_over_shear(0.6, 5.0), -1.0);
 }
 
-// A volume that depends on the rate damps short waves from √3 I = 0.008 on, where the friction alone
-// would let them grow.
+// A volume that depends on the rate damps short waves from √3 I = 0.008 on, where the friction
+// alone would let them grow.
 TEST(PlaneWave, RateInTheVolumeDampsShortWaves) {
   EXPECT_GT(column(false).rate_over_shear(0.03, 5.0), 5.0);
   EXPECT_LT(column(true).rate_over_shear(0.03, 5.0), -100.0);
