@@ -73,6 +73,10 @@ struct CriticalStateMuI {
       const auto given = I_v == I_v;
       return select(given, T(T(1.0) / (select(given, I_v, T(1.0)) * (lambda - kappa))), T(0.0));
     }
+    /// M_∞ = M and no I_v: the law at rest, whatever the rate.
+    bool rate_independent() const {
+      return value(M_inf) == value(M) && !(value(volume_rate()) > 0.0);
+    }
     Clay::Params<T> clay() const {
       return {M, lambda, kappa, nu, Gamma, N, p_ref, rho_p, p_sep, T(0.0)};
     }
@@ -126,7 +130,8 @@ struct CriticalStateMuI {
   }
 
   /// The same, but < 0 within the surface at rest, where it is continued by its tangent: a solver
-  /// of slow flow needs a derivative that holds over more than the breadth of I itself.
+  /// of slow flow needs a derivative that holds over more than the breadth of I itself. 0 for
+  /// parameters without any rate effect (rate_independent()).
   template <class T, int N>
   static T flow_number(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at);
 
@@ -134,7 +139,10 @@ struct CriticalStateMuI {
   template <class T, int N>
   static std::array<T, 2> derive(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at) {
     const T I = inertial_number(P, stress, at);
-    return {exp_pair(T(at[i_ln_p_c] + P.volume_rate() * I)).whole, I};
+    const T j = P.volume_rate();
+    // (without I_v the volume knows no rate, be I as large as it will)
+    const T dilation = value(j) > 0.0 ? T(j * I) : T(0.0);
+    return {exp_pair(T(at[i_ln_p_c] + dilation)).whole, I};
   }
 
   /// τ of steady shear under p > 0: M M_I p/√3 at I = γ̇d√(ρ_p/p)/√3                     CSM-5

@@ -473,7 +473,7 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
 template <class T, int N>
 T CriticalStateMuI::flow_number(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at) {
   const T p = pressure(stress);
-  if (!(value(p) > 0.0)) return T(0.0);  // apart
+  if (!(value(p) > 0.0) || P.rate_independent()) return T(0.0);  // (no p: apart)
   // Ψ(I) = ln{½[1 + (η/M_I)²]} − ln(p_c0/2p) − jI falls                                     CSM-4
   const T eta = mises(stress) / (P.M * p);
   const T ell = at[i_ln_p_c] - ln(T(T(2.0) * p));
@@ -527,8 +527,9 @@ void CriticalStateMuI::rate(const Params<T>& P, const Sym<T, N>& stress, const S
   const T p = pressure(stress);
   const T q = mises(stress);
   // Without shear stress there is no direction of flow and no rate effect: isotropic compression
-  // (CSM-3: ε̇_q^p = 0) is that of the law at rest.
-  if (branch == Branch::elastic || value(q) <= 1e-12 * value(p)) {
+  // (CSM-3: ε̇_q^p = 0) is that of the law at rest. So is everything where no parameter knows a
+  // rate.
+  if (branch == Branch::elastic || value(q) <= 1e-12 * value(p) || P.rate_independent()) {
     const auto clay = at_rest(stress, at);
     Clay::State<T> clay_rate{};
     Clay::rate(P.clay(), stress, clay, density, D, branch, stress_rate, clay_rate);

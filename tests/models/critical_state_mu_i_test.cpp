@@ -136,6 +136,12 @@ TEST(CriticalStateMuI, StressAndVolumeSayTheInertialNumber) {
     EXPECT_GT(I, 0.01);
   }
   EXPECT_EQ(Law::inertial_number(grains(0.5), Sym<double, 6>{}, {4.6, 1300.0}), 0.0);
+  // without I_v no I carries more than M_∞ does: said as ∞, with the p_c of any I
+  Sym<double, 6> beyond = Sym<double, 6>::isotropic(-1e3);
+  beyond[3] = 1e3;
+  const auto [p_c, I] = Law::derive(grains(0.0), beyond, {std::log(2e3), 0.0});
+  EXPECT_TRUE(std::isinf(I));
+  EXPECT_NEAR(p_c, 2e3, 1e-12 * 2e3);
 }
 
 // CSM-5: whatever it started from, shear at constant volume ends at q = M M_I(I) p and
