@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "input/input_file.hpp"
 #include "io/json.hpp"
@@ -57,7 +57,9 @@ std::string default_text(const ParamInfo& parameter) {
     case Need::required:
       return "required";
     case Need::defaulted:
-      return fmt::format("{}", parameter.value);
+      return parameter.words.empty()
+                 ? fmt::format("{}", parameter.value)
+                 : std::string(parameter.words[static_cast<std::size_t>(parameter.value)]);
     case Need::optional:
       break;
   }
@@ -99,9 +101,16 @@ std::string law_description(std::string_view name) {
     out += fmt::format("{}{}{}\n{}\n\n", info->name, option.empty() ? "" : ", " + option,
                        is_default(*info) ? " (default)" : "", info->doc);
     std::vector<Row> rows{{"SYMBOL", "KEY", "UNIT", "DEFAULT", "RANGE", "MEANING"}};
-    for (const ParamInfo& p : info->parameters)
-      rows.push_back({std::string(p.symbol), std::string(p.name), std::string(p.unit),
-                      default_text(p), to_string(p.range), std::string(p.doc)});
+    for (const ParamInfo& p : info->parameters) {
+      rows.push_back(
+          {std::string(p.symbol), std::string(p.name), std::string(p.unit), default_text(p),
+           p.words.empty() ? to_string(p.range) : fmt::format("{}", fmt::join(p.words, ", ")),
+           std::string(p.doc)});
+      if (!p.angle.name.empty())
+        rows.push_back(
+            {"", std::string(p.angle.name), "°", fmt::format("or {}", p.name), "(0, 90)",
+             fmt::format("friction angle in triaxial compression that gives {}", p.name)});
+    }
     out += aligned(rows, "  ");
     const auto list = [&](const char* heading, std::span<const StateField> fields) {
       if (fields.empty()) return;
@@ -125,17 +134,24 @@ std::string laws_as_json(std::string_view name) {
     Json law{{"name", info->name}, {"doc", info->doc}, {"default", is_default(*info)}};
     if (!info->option_key.empty()) law[std::string(info->option_key)] = info->option;
     law["parameters"] = Json::array();
-    for (const ParamInfo& p : info->parameters)
-      law["parameters"].push_back({{"key", p.name},
-                                   {"symbol", p.symbol},
-                                   {"unit", p.unit},
-                                   {"required", p.need == Need::required},
-                                   {"default", p.need == Need::defaulted ? Json(p.value) : Json()},
-                                   {"lower", finite(p.range.lower)},
-                                   {"upper", finite(p.range.upper)},
-                                   {"lower_open", p.range.lower_open},
-                                   {"upper_open", p.range.upper_open},
-                                   {"doc", p.doc}});
+    for (const ParamInfo& p : info->parameters) {
+      Json parameter{{"key", p.name},
+                     {"symbol", p.symbol},
+                     {"unit", p.unit},
+                     {"required", p.need == Need::required},
+                     {"default", p.need == Need::defaulted ? Json(p.value) : Json()},
+                     {"lower", finite(p.range.lower)},
+                     {"upper", finite(p.range.upper)},
+                     {"lower_open", p.range.lower_open},
+                     {"upper_open", p.range.upper_open},
+                     {"doc", p.doc}};
+      if (!p.angle.name.empty()) parameter["angle"] = p.angle.name;
+      if (!p.words.empty()) {
+        parameter["words"] = std::vector<std::string>(p.words.begin(), p.words.end());
+        parameter["default"] = default_text(p);
+      }
+      law["parameters"].push_back(std::move(parameter));
+    }
     for (const auto& [key, fields] :
          {std::pair{"state", info->state}, std::pair{"output", info->derived}}) {
       law[key] = Json::array();

@@ -62,13 +62,13 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
     if (entry == nullptr || key.str() == "shared") continue;
     const std::string name(key.str());
     const auto law_name = file.root()["law"]["name"].value<std::string>();
-    const auto has = [&](const LawInfo& info) {
-      return law_name && info.name == *law_name &&
-             std::any_of(info.parameters.begin(), info.parameters.end(),
-                         [&](const ParamInfo& p) { return p.name == name; });
-    };
     const LawList laws = all_laws();
-    if (std::none_of(laws.begin(), laws.end(), has)) {
+    const ParamInfo* parameter = nullptr;
+    for (const LawInfo& info : laws)
+      if (law_name && info.name == *law_name)
+        for (const ParamInfo& p : info.parameters)
+          if (p.name == name) parameter = &p;
+    if (parameter == nullptr) {
       std::vector<std::string_view> known{"shared"};
       for (const LawInfo& info : laws)
         if (law_name && info.name == *law_name)
@@ -81,7 +81,13 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
                        : fmt::format("; did you mean '{}'?", near)));
       continue;
     }
-    if (law != nullptr && law->contains(name)) {
+    if (!parameter->words.empty()) {
+      problems.push_back(fmt::format("{}: {} is a word, not a number: give it in [law]",
+                                     to_string(file.origin("fit." + name)), name));
+      continue;
+    }
+    const std::string_view angle = parameter->angle.name;
+    if (law != nullptr && (law->contains(name) || (!angle.empty() && law->contains(angle)))) {
       problems.push_back(fmt::format("{}: {} is fixed in [law] and free in [fit]: leave out one",
                                      to_string(file.origin("fit." + name)), name));
       continue;

@@ -37,6 +37,49 @@ const ParamInfo* find_parameter(const LawInfo& form, std::string_view name) {
   return found == form.parameters.end() ? nullptr : &*found;
 }
 
+/// The parameter that a friction angle of this name gives.
+const ParamInfo* find_angle(const LawInfo& form, std::string_view name) {
+  const auto found = std::find_if(form.parameters.begin(), form.parameters.end(),
+                                  [&](const ParamInfo& p) { return p.angle.name == name; });
+  return found == form.parameters.end() ? nullptr : &*found;
+}
+
+constexpr Range angle_range{0.0, 90.0, true, true};
+std::string angle_doc(const ParamInfo& parameter) {
+  return fmt::format("friction angle in triaxial compression, instead of {}", parameter.name);
+}
+
+/// The value of a parameter: a number, or the position of a word.
+std::optional<double> read_parameter(TomlReader& law, const ParamInfo& parameter) {
+  if (parameter.words.empty())
+    return law.optional_number(
+        {parameter.name, parameter.unit, parameter.doc, parameter.range, {}});
+  const auto word =
+      law.optional_choice(parameter.name, {parameter.words.begin(), parameter.words.end()});
+  if (!word) return {};
+  return static_cast<double>(*word);
+}
+
+/// The value of a parameter whose friction angle is given in its place.
+std::optional<double> read_angle(TomlReader& law, const ParamInfo& parameter) {
+  const std::string_view key = parameter.angle.name;
+  const std::string doc = angle_doc(parameter);
+  const auto degrees = law.optional_number({key, "°", doc, angle_range, {}});
+  if (!degrees) return {};
+  if (law.has(parameter.name)) {
+    law.report(key, fmt::format("give either {} or {}: {} is {} of a friction angle of {:g}°",
+                                law.path_of(parameter.name), law.path_of(key),
+                                toml_number(parameter.angle.parameter_of(*degrees)), parameter.name,
+                                *degrees));
+    return {};
+  }
+  return parameter.angle.parameter_of(*degrees);
+}
+
+std::string value_text(const ParamInfo& parameter, double x) {
+  return parameter.words.empty() ? toml_number(x) : toml_string(word_of(parameter, x));
+}
+
 /// The option as text: the registry writes tension_cutoff = true as "true".
 std::optional<std::string> read_option(TomlReader& law, const std::vector<Form>& forms,
                                        std::string_view key) {
@@ -54,6 +97,10 @@ std::optional<std::string> read_option(TomlReader& law, const std::vector<Form>&
 }
 
 }  // namespace
+
+std::string word_of(const ParamInfo& parameter, double x) {
+  return std::string(parameter.words[static_cast<std::size_t>(x)]);
+}
 
 LawSpec read_law(TomlReader law) {
   LawSpec spec;
@@ -80,17 +127,22 @@ LawSpec read_law(TomlReader law) {
   std::vector<std::string> unknown;
   for (const std::string& key : law.keys()) {
     if (key == "name") continue;
-    const ParamInfo* parameter = nullptr;
-    for (const Form form : forms)
+    const ParamInfo *parameter = nullptr, *of_angle = nullptr;
+    for (const Form form : forms) {
       if (parameter == nullptr) parameter = find_parameter(*form, key);
+      if (of_angle == nullptr) of_angle = find_angle(*form, key);
+    }
     if (key == forms.front()->option_key) {
       const std::optional<std::string> option = read_option(law, forms, key);
       if (option) spec.options[key] = *option;
       good = good && option;
     } else if (parameter != nullptr) {
-      const std::optional<double> x = law.optional_number(
-          {parameter->name, parameter->unit, parameter->doc, parameter->range, {}});
+      const std::optional<double> x = read_parameter(law, *parameter);
       if (x) spec.values[key] = *x;
+      good = good && x;
+    } else if (of_angle != nullptr) {
+      const std::optional<double> x = read_angle(law, *of_angle);
+      if (x) spec.values[std::string(of_angle->name)] = *x;
       good = good && x;
     } else {
       unknown.push_back(key);
@@ -109,7 +161,8 @@ LawSpec read_law(TomlReader law) {
   }
   if (form == nullptr) return spec;
   for (const ParamInfo& parameter : form->parameters)
-    if (parameter.need == Need::required && !law.has(parameter.name))
+    if (parameter.need == Need::required && !law.has(parameter.name) &&
+        !(!parameter.angle.name.empty() && law.has(parameter.angle.name)))
       good = attempt([&] { parameter_vector(spec.name, {&parameter, 1}, {}); }) && good;
   if (good) attempt([&] { checked_parameters(spec); });
 
@@ -133,7 +186,8 @@ std::string law_lines(const LawSpec& spec) {
     if (std::isnan(theta[i])) continue;
     const bool derived =
         parameter.need == Need::optional && !spec.values.contains(std::string(parameter.name));
-    out += key_line(fmt::format("{}{}", derived ? "# " : "", parameter.name), toml_number(theta[i]),
+    out += key_line(fmt::format("{}{}", derived ? "# " : "", parameter.name),
+                    value_text(parameter, theta[i]),
                     fmt::format("{}{}", derived ? "derived: " : "",
                                 unit_and_doc(parameter.unit, parameter.doc)));
   }
@@ -148,7 +202,20 @@ KeyInfo parameter_info(const ParamInfo& parameter, std::string_view law) {
   info.unit = parameter.unit;
   info.doc = fmt::format("{} {}", law, parameter.doc);
   info.range = parameter.range;
-  if (parameter.need == Need::defaulted) info.fallback = toml_number(parameter.value);
+  if (parameter.need == Need::defaulted) info.fallback = value_text(parameter, parameter.value);
+  if (!parameter.words.empty()) {
+    info.kind = ValueKind::word;
+    info.words.assign(parameter.words.begin(), parameter.words.end());
+  }
+  return info;
+}
+
+KeyInfo angle_info(const ParamInfo& parameter) {
+  KeyInfo info;
+  info.name = parameter.angle.name;
+  info.unit = "°";
+  info.doc = angle_doc(parameter);
+  info.range = angle_range;
   return info;
 }
 
@@ -184,8 +251,11 @@ std::vector<KeyInfo> law_forms() {
       }
       option->words.emplace_back(form.option);
     }
-    for (const ParamInfo& parameter : form.parameters)
-      if (find(parameter.name) == nullptr) law->below.push_back(parameter_info(parameter, ""));
+    for (const ParamInfo& parameter : form.parameters) {
+      if (find(parameter.name) != nullptr) continue;
+      law->below.push_back(parameter_info(parameter, ""));
+      if (!parameter.angle.name.empty()) law->below.push_back(angle_info(parameter));
+    }
   }
   return laws;
 }

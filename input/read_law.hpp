@@ -17,6 +17,9 @@ LawSpec read_law(TomlReader law);
 /// from others (G = 4K) stand in comments, so that they follow when the file is edited.
 std::string law_lines(const LawSpec& spec);
 
+/// The word of a parameter that has words, by its value.
+std::string word_of(const ParamInfo& parameter, double x);
+
 /// A [law] table as keys: the parameters of every law, from the registry.
 void law_keys(Keys& keys, LawSpec& spec);
 

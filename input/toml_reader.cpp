@@ -141,10 +141,15 @@ std::string TomlReader::text(std::string_view key, std::string_view doc,
 
 std::size_t TomlReader::choice(std::string_view key, const std::vector<std::string_view>& words,
                                std::size_t fallback) {
+  return optional_choice(key, words).value_or(fallback);
+}
+
+std::optional<std::size_t> TomlReader::optional_choice(std::string_view key,
+                                                       const std::vector<std::string_view>& words) {
   expect(key);
   const toml::node* node = get(key);
-  if (node == nullptr) return fallback;
-  return position(*node, path_of(key), words).value_or(fallback);
+  if (node == nullptr) return {};
+  return position(*node, path_of(key), words);
 }
 
 std::optional<std::size_t> TomlReader::position(const toml::node& node, std::string_view at,

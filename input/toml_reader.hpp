@@ -46,6 +46,9 @@ class TomlReader {
   /// One of several words; returns its position.
   std::size_t choice(std::string_view key, const std::vector<std::string_view>& words,
                      std::size_t fallback);
+  /// Absent where the key is, or what it says is none of the words, which is reported.
+  std::optional<std::size_t> optional_choice(std::string_view key,
+                                             const std::vector<std::string_view>& words);
   /// [x, y], each in the key's range.
   std::array<double, 2> pair(const NumberKey& key,
                              std::optional<std::array<double, 2>> fallback = {});

@@ -28,7 +28,7 @@ struct CriticalStateMuI {
   /// The law at rest.
   using Clay = ModifiedCamClay<Compression::ln_v_ln_p>;
 
-  static constexpr std::array<ParamInfo, 13> parameters{{
+  static constexpr std::array<ParamInfo, 14> parameters{{
       Clay::parameters[0],  // M
       Clay::parameters[1],  // lambda
       Clay::parameters[2],  // kappa
@@ -38,8 +38,15 @@ struct CriticalStateMuI {
       Clay::parameters[6],  // p_ref
       Clay::parameters[7],  // rho_p
       Clay::parameters[8],  // p_sep
-      {"M_inf", "M_∞", "-", "slope q/p of steady flow at a high inertial number (>= M)",
-       Need::required, 0.0, positive, Scale::linear},
+      {"M_inf",
+       "M_∞",
+       "-",
+       "slope q/p of steady flow at a high inertial number (>= M)",
+       Need::required,
+       0.0,
+       positive,
+       Scale::linear,
+       {"phi_inf", cone::slope_of_angle}},
       {"I_M", "I_M", "-",
        "inertial number (of the triaxial strain rate) half way between M and M_inf", Need::required,
        0.0, positive, Scale::log},
@@ -48,6 +55,7 @@ struct CriticalStateMuI {
        "change the volume)",
        Need::optional, 0.0, positive, Scale::log},
       {"d", "d", "m", "grain diameter", Need::required, 0.0, positive, Scale::log},
+      cone::shape,
   }};
   static constexpr std::array<StateField, 2> state{{
       {"ln_p_c_rest", "ln p_c0", "-",
@@ -63,11 +71,17 @@ struct CriticalStateMuI {
 
   template <class T>
   struct Params {
-    T M, lambda, kappa, nu, Gamma, N, p_ref, rho_p, p_sep, M_inf, I_M, I_v, d;
+    T M, lambda, kappa, nu, Gamma, N, p_ref, rho_p, p_sep, M_inf, I_M, I_v, d, shape;
     static Params from(std::span<const T> t) {
-      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], t[12]};
+      return {t[0], t[1], t[2], t[3],  t[4],  t[5],  t[6],
+              t[7], t[8], t[9], t[10], t[11], t[12], t[13]};
     }
     T shear_ratio() const { return clay().shear_ratio(); }
+    /// M in the direction of a deviator; M_∞ shares its shape                            CONE-1
+    template <int n>
+    T slope(const Sym<T, n>& s) const {
+      return M * cone::share(shape, M, s);
+    }
     /// 1/(I_v(λ − κ)): what I adds to ln p_s; 0 where rate does not change the volume.
     T volume_rate() const {
       const auto given = I_v == I_v;
@@ -78,7 +92,7 @@ struct CriticalStateMuI {
       return value(M_inf) == value(M) && !(value(volume_rate()) > 0.0);
     }
     Clay::Params<T> clay() const {
-      return {M, lambda, kappa, nu, Gamma, N, p_ref, rho_p, p_sep, T(0.0)};
+      return {M, lambda, kappa, nu, Gamma, N, p_ref, rho_p, p_sep, T(0.0), shape};
     }
   };
   template <class T>
@@ -145,13 +159,13 @@ struct CriticalStateMuI {
     return {exp_pair(T(at[i_ln_p_c] + dilation)).whole, I};
   }
 
-  /// τ of steady shear under p > 0: M M_I p/√3 at I = γ̇d√(ρ_p/p)/√3                     CSM-5
+  /// τ of steady shear under p > 0: M M_I p/√3, M that of simple shear, at I = γ̇d√(ρ_p/p)/√3 CSM-5
   template <class T>
   static T steady_shear_stress(const Params<T>& P, const T& p, const T& gamma_dot) {
     using std::sqrt;
     const T root_3(std::sqrt(3.0));
     const T I = gamma_dot / root_3 * P.d * sqrt(T(P.rho_p / p));
-    return P.M * friction_growth(P, I) * p / root_3;
+    return P.M * cone::shear_share(P.shape, P.M) * friction_growth(P, I) * p / root_3;
   }
 
   template <class T, int N>

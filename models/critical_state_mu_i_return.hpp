@@ -342,7 +342,9 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
   const T Q1 = T(6.0) * contract(s_n, strain_dev);
   const T Q2 = T(6.0) * contract(strain_dev, strain_dev);
   const T q2_trial = Q0 + G * (Q1 + G * Q2);
-  const T q2_M2 = q2_trial / square(P.M);
+  const T M =
+      P.slope(s_n + (T(2.0) * G) * strain_dev);  // of the trial state: s keeps its direction
+  const T q2_M2 = q2_trial / square(M);
   const T p_c_n = exp_pair(ln_p_c_n).whole;
   const T F = q2_M2 - p_trial * (p_c_n - p_trial);  // CSM-1 at I = 0
   const T round_off(16.0 * std::numeric_limits<double>::epsilon());
@@ -371,12 +373,12 @@ Mask<T> CriticalStateMuI::update(const Params<T>& P, const Increment<T, N>& inc,
     const T c = select(rate_scale < T(1e100), rate_scale, T(1e100));
     T c_at_rest = c;
     if (any(beyond_numbers)) c_at_rest = c * exp_pair(T(half * (x_base - x_trial))).whole;
-    const CriticalStateReturn<T> eq{T(q_trial * inv_p / P.M),
+    const CriticalStateReturn<T> eq{T(q_trial * inv_p / M),
                                     T(ln_p_c_n - ln_2 - ln(select(flows, p_n, one)) - x_trial),
                                     r,
                                     volume_rate,
                                     c,
-                                    T(three_G * P.kappa * inv_p / square(P.M)),
+                                    T(three_G * P.kappa * inv_p / square(M)),
                                     T(P.M_inf / P.M - one),
                                     P.I_M,
                                     T(x_trial - x_base),
@@ -475,7 +477,8 @@ T CriticalStateMuI::flow_number(const Params<T>& P, const Sym<T, N>& stress, con
   const T p = pressure(stress);
   if (!(value(p) > 0.0) || P.rate_independent()) return T(0.0);  // (no p: apart)
   // Ψ(I) = ln{½[1 + (η/M_I)²]} − ln(p_c0/2p) − jI falls                                     CSM-4
-  const T eta = mises(stress) / (P.M * p);
+  const Sym<T, N> s = deviator(stress);
+  const T eta = T(std::sqrt(3.0)) * shear_norm(s) / (P.slope(s) * p);
   const T ell = at[i_ln_p_c] - ln(T(T(2.0) * p));
   const T j = P.volume_rate();
   const T growth = P.M_inf / P.M - T(1.0);
@@ -525,7 +528,8 @@ void CriticalStateMuI::rate(const Params<T>& P, const Sym<T, N>& stress, const S
                             Sym<T, N>& stress_rate, State<T>& state_rate) {
   using std::sqrt;
   const T p = pressure(stress);
-  const T q = mises(stress);
+  const Sym<T, N> s = deviator(stress);
+  const T q = T(std::sqrt(3.0)) * shear_norm(s);
   // Without shear stress there is no direction of flow and no rate effect: isotropic compression
   // (CSM-3: ε̇_q^p = 0) is that of the law at rest. So is everything where no parameter knows a
   // rate.
@@ -537,12 +541,12 @@ void CriticalStateMuI::rate(const Params<T>& P, const Sym<T, N>& stress, const S
     return;
   }
   const T I = flow_number(P, stress, at);
-  const T flow_q = I * sqrt(T(p / P.rho_p)) / P.d;    // ε̇_q^p
-  const T Q = q / (P.M * friction_growth(P, I) * p);  // p_s = ½p(1 + Q²)
-  const T flow_v = square(P.M) * p * (T(1.0) - Q * Q) / (T(2.0) * q) * flow_q;  // CSM-3
+  const T flow_q = I * sqrt(T(p / P.rho_p)) / P.d;  // ε̇_q^p
+  const T M = P.slope(s);
+  const T Q = q / (M * friction_growth(P, I) * p);                            // p_s = ½p(1 + Q²)
+  const T flow_v = square(M) * p * (T(1.0) - Q * Q) / (T(2.0) * q) * flow_q;  // CSM-3
   const T K = p / P.kappa;
   const T two_G = T(2.0) * P.shear_ratio() * K;
-  const Sym<T, N> s = deviator(stress);
   stress_rate = two_G * (deviator(D) - (T(1.5) * flow_q / q) * s) -
                 Sym<T, N>::isotropic(K * (-trace(D) - flow_v));
   state_rate = {flow_v / (P.lambda - P.kappa), T(0.0)};  // CSM-2

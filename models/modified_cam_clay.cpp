@@ -43,7 +43,9 @@ double greatest_p_c(const typename Law<compression>::template Params<double>& P,
   const double K0 = given.K0_nc.value_or(0.5 * (stress[0] + stress[2]) / stress[1]);
   const double greatest = *given.ocr_v * vertical;
   const double p = greatest * (1.0 + 2.0 * K0) / 3.0 + P.p_shift;
-  return p + square(greatest * (1.0 - K0) / P.M) / p;
+  const double third = greatest * (1.0 - K0) / 3.0;  // a fall of the horizontal stress
+  const Sym<double, 6> s{{third, -2.0 * third, third}};
+  return p + square(greatest * (1.0 - K0) / P.slope(s)) / p;
 }
 
 }  // namespace
@@ -146,7 +148,8 @@ InitialPoint ModifiedCamClay<compression>::initial(const Params<double>& P,
                      "the initial p must be > p_sep, and compression is positive: below it the "
                      "point carries no stress");
   const double q = mises(point.stress);
-  const double p_c_yield = p + square(q / P.M) / p;  // F = 0 solved for p_c (MCC-1)
+  const double p_c_yield =
+      p + square(q / P.slope(deviator(point.stress))) / p;  // F = 0 solved for p_c (MCC-1)
   const bool volume_is_free = p_c == 0.0;
   if (volume_is_free) {
     if (given.ocr) {

@@ -9,6 +9,7 @@
 /// Written in the shifted pressure p̃ = p + p_shift throughout (p_shift = 0: the classical law;
 /// p_shift > 0: a finite stiffness p_shift/κ at p = 0).
 
+#include "models/cone.hpp"
 #include "models/law.hpp"
 #include "models/scalar.hpp"
 
@@ -30,9 +31,16 @@ struct ModifiedCamClay {
   static constexpr bool has_stress_memory = true;
   static constexpr bool iterates = true;
 
-  static constexpr std::array<ParamInfo, 10> parameters{{
-      {"M", "M", "-", "slope q/p of the critical state line", Need::required, 0.0,
-       Range{0.0, 3.0, true, true}, Scale::linear},
+  static constexpr std::array<ParamInfo, 11> parameters{{
+      {"M",
+       "M",
+       "-",
+       "slope q/p of the critical state line",
+       Need::required,
+       0.0,
+       Range{0.0, 3.0, true, true},
+       Scale::linear,
+       {"phi", cone::slope_of_angle}},
       {"lambda", "λ", "-", "slope of the compression line", Need::required, 0.0, positive,
        Scale::log},
       {"kappa", "κ", "-", "slope of the swelling lines", Need::required, 0.0, positive, Scale::log},
@@ -50,6 +58,7 @@ struct ModifiedCamClay {
        Need::defaulted, 1e-2, positive, Scale::log},
       {"p_shift", "p_s", "Pa", "shift p -> p + p_s of the whole law: a finite stiffness at p = 0",
        Need::defaulted, 0.0, not_negative, Scale::linear},
+      cone::shape,
   }};
   static constexpr std::array<StateField, 2> state{{
       {"p_c", "p_c", "Pa", "preconsolidation pressure (of p + p_shift)"},
@@ -59,9 +68,14 @@ struct ModifiedCamClay {
 
   template <class T>
   struct Params {
-    T M, lambda, kappa, nu, Gamma, N, p_ref, rho_p, p_sep, p_shift;
+    T M, lambda, kappa, nu, Gamma, N, p_ref, rho_p, p_sep, p_shift, shape;
     static Params from(std::span<const T> t) {
-      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9]};
+      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10]};
+    }
+    /// M in the direction of a deviator                                                 CONE-1
+    template <int n>
+    T slope(const Sym<T, n>& s) const {
+      return M * cone::share(shape, M, s);
     }
     /// G/K = 3(1 − 2ν)/(2(1 + ν))                                                    MCC-4
     T shear_ratio() const { return T(1.5) * (T(1.0) - T(2.0) * nu) / (T(1.0) + nu); }
@@ -107,8 +121,9 @@ struct ModifiedCamClay {
   static T yield(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at, const T&,
                  const Sym<T, N>&) {
     const T p = pressure(stress) + P.p_shift;
-    const T q = mises(stress);
-    return square(T(q / P.M)) / at[i_p_c] - p * (T(1.0) - p / at[i_p_c]);
+    const Sym<T, N> s = deviator(stress);
+    const T q = T(std::sqrt(3.0)) * shear_norm(s);
+    return square(T(q / P.slope(s))) / at[i_p_c] - p * (T(1.0) - p / at[i_p_c]);
   }
 
   template <class T, int N>

@@ -17,6 +17,10 @@ namespace repose {
 /// where (q_tr/Mp)² has been written as a polynomial in G.
 /// H < 0 for w → 0 and H ≥ 0 at w = 1 (the trial lies outside) or where 2h = 1 (p = p_c), whichever
 /// comes first: a bracket that needs no search, wet or dry, for any increment.
+///
+/// Where strength depends on the direction of s (cone.hpp), G stays that of the predictor, G_n
+/// times the mean growth Γ: f is then Γg in C and in q_tr, and s_{n+1} ∥ s_trial has the strength
+/// of the trial state. The argument holds as it stands.
 template <class T>
 struct CamClayReturn {
   T a;           ///< κ/λ
@@ -24,6 +28,7 @@ struct CamClayReturn {
   T ln_ratio;    ///< ln(p_cn/2p_n)
   T beta;        ///< 3(G/K)(1 − a)/M²
   T A0, A1, A2;  ///< (3/2) s_n:s_n/(Mp_n)², 6G_n s_n:Δe/(Mp_n)², 6G_n² Δe:Δe/(Mp_n)²
+  T held;  ///< Γ where G is that of the predictor, else 0; A0 is then (q_tr/Mp_n)², A1 = A2 = 0
 
   struct Point {
     T w;
@@ -57,6 +62,10 @@ struct CamClayReturn {
       phi = select(near_0(y, 1e-16), one, T(y * inv_y));
       f_x = select(near_0(x, 1e-5), T(-0.5), T((g - f) * inv_x));
       phi_y = select(near_0(y, 1e-5), T(0.5), T((one - phi * h) * inv_y));
+    }
+    if (any(held > T(0.0))) {
+      f = held * g;
+      if constexpr (!ScalarTraits<T>::is_dual) f_x = -f;
     }
     const T C = beta * f * phi;
     const T D = w + (one - w) * C;
@@ -112,7 +121,8 @@ struct CamClayReturn {
   }
 
   CamClayReturn<Value<T>> values() const {
-    return {value(a), value(L), value(ln_ratio), value(beta), value(A0), value(A1), value(A2)};
+    return {value(a),  value(L),  value(ln_ratio), value(beta),
+            value(A0), value(A1), value(A2),       value(held)};
   }
 
   static Mask<T> near_0(const T& x, double bound) { return x * x < T(bound * bound); }
@@ -224,13 +234,20 @@ Mask<T> ModifiedCamClay<compression>::update(const Params<T>& P, const Increment
   const T x_trial = strain_v / kappa;
   const T g_n = P.shear_ratio() * p_n / kappa;
   const ExpPair<T> growth = exp_pair(x_trial);
-  const T mean_growth = expm1_over(x_trial, growth);
+  T mean_growth = expm1_over(x_trial, growth);
   const T p_trial = p_n * growth.whole;
   const T Q0 = T(1.5) * contract(s_n, s_n);
   const T Q1 = T(6.0) * contract(s_n, strain_dev);
   const T Q2 = T(6.0) * contract(strain_dev, strain_dev);
+  // With a G that is held, a compression by more than 30κ in one step has no use for one that grows
+  // with e^x.
+  const bool round_cone = cone::is_circle(P.shape);
+  if (!round_cone && any(x_trial > T(30.0)))
+    mean_growth = select(x_trial > T(30.0), expm1_over(T(30.0)), mean_growth);
   const T G_trial = g_n * mean_growth;
-  const T q2_M2 = (Q0 + G_trial * (Q1 + G_trial * Q2)) / square(P.M);
+  const T M = round_cone ? P.M : P.slope(s_n + (T(2.0) * G_trial) * strain_dev);
+  const T q2_trial = Q0 + G_trial * (Q1 + G_trial * Q2);
+  const T q2_M2 = q2_trial / square(M);
   const T F = q2_M2 - p_trial * (p_cn - p_trial);  // MCC-1
   // Outside by more than round-off; written so that an overflowed trial (∞ − ∞ = NaN) goes to the
   // return, which needs no trial.
@@ -264,15 +281,16 @@ Mask<T> ModifiedCamClay<compression>::update(const Params<T>& P, const Increment
     }
     const auto plastic = yields && !torn;
     if (any(plastic)) {
-      const T unit = one / (P.M * p_n);
+      const T unit = one / (M * p_n);
       const T G_unit = g_n * unit;
       const CamClayReturn<T> eq{a,
                                 L,
                                 ln_ratio,
-                                T(T(3.0) * P.shear_ratio() * (one - a) / square(P.M)),
-                                T(Q0 * unit * unit),
-                                T(Q1 * unit * G_unit),
-                                T(Q2 * G_unit * G_unit)};
+                                T(T(3.0) * P.shear_ratio() * (one - a) / square(M)),
+                                T((round_cone ? Q0 : q2_trial) * unit * unit),
+                                round_cone ? T(Q1 * unit * G_unit) : zero,
+                                round_cone ? T(Q2 * G_unit * G_unit) : zero,
+                                round_cone ? zero : mean_growth};
       auto active = plastic && !failed;
       typename CamClayReturn<T>::Point end;
       if constexpr (ScalarTraits<T>::is_dual) {
@@ -391,11 +409,14 @@ void ModifiedCamClay<compression>::rate(const Params<T>& P, const Sym<T, N>& str
   T elastic_v = strain_rate_v;
   Sym<T, N> s_rate = (T(2.0) * G) * e_rate;
   if (branch == Branch::plastic) {
-    // consistency dF = (3/M²) s:ds + (2p − p_c) dp − p dp_c = 0 with MCC-2, MCC-3
-    const T three_M2 = T(3.0) / square(P.M);
+    // consistency dF = (3/M²) s:ds − 2(q/M)² d ln M + (2p − p_c) dp − p dp_c = 0 with MCC-2, MCC-3;
+    // flow along s does not turn s, and M changes with its direction alone
+    const T three_M2 = T(3.0) / square(P.slope(s));
     const T volumetric = T(2.0) * p - p_c;
     const T hardening = p_c * P.kappa / ((P.lambda - P.kappa) * kappa);  // p_c/(λ* − κ*)
-    const T load = volumetric * K * strain_rate_v + three_M2 * T(2.0) * G * contract(s, e_rate);
+    T load = volumetric * K * strain_rate_v + three_M2 * T(2.0) * G * contract(s, e_rate);
+    if (!cone::is_circle(P.shape))
+      load = load - three_M2 * contract(s, s) * cone::share_rate(P.shape, P.M, s, s_rate);
     const T stiffness = volumetric * volumetric * K +
                         square(three_M2) * T(2.0) * G * contract(s, s) + p * volumetric * hardening;
     const T multiplier = load / stiffness;

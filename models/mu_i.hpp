@@ -6,6 +6,7 @@
 /// mu_i_barker_gray.hpp has a third form, with another curve.
 /// I = γ̇ d √(ρ_p/p), μ(I) = μ_0 + (μ_d − μ_0)/(I_0/I + 1), γ̇ = √(2D′:D′), τ = μ(I)p.
 
+#include "models/cone.hpp"
 #include "models/contact.hpp"
 #include "models/law.hpp"
 #include "models/scalar.hpp"
@@ -15,11 +16,18 @@ namespace repose {
 /// What the two forms share: the pressure and the flow curve.
 namespace mu_i {
 
-inline constexpr ParamInfo mu_0{"mu_0",         "μ_0", "-",      "friction coefficient at rest",
-                                Need::required, 0.0,   positive, Scale::linear};
-inline constexpr ParamInfo mu_d{
-    "mu_d",         "μ_d", "-",      "friction coefficient at high inertial number",
-    Need::required, 0.0,   positive, Scale::linear};
+inline constexpr ParamInfo mu_0{
+    "mu_0", "μ_0",    "-",           "friction coefficient at rest",    Need::required,
+    0.0,    positive, Scale::linear, {"phi_0", cone::friction_of_angle}};
+inline constexpr ParamInfo mu_d{"mu_d",
+                                "μ_d",
+                                "-",
+                                "friction coefficient at high inertial number",
+                                Need::required,
+                                0.0,
+                                positive,
+                                Scale::linear,
+                                {"phi_d", cone::friction_of_angle}};
 inline constexpr ParamInfo I_0{
     "I_0",          "I_0", "-",      "inertial number half way between μ_0 and μ_d",
     Need::required, 0.0,   positive, Scale::log};
@@ -37,10 +45,22 @@ T pressure_of(const P& par, const T& density) {
   return floor_at(T(par.K / par.rho_0 * (density - par.rho_0)), 0.0);  // MUI-1, no tension
 }
 
-/// γ̇ = √(2D′:D′)
-template <class T, int N>
-T shear_rate(const Sym<T, N>& D) {
-  return T(2.0) * shear_norm(deviator(D));
+/// q/p of friction at rest in triaxial compression
+template <class P>
+auto slope(const P& par) {
+  using T = std::decay_t<decltype(par.mu_0)>;
+  return T(T(std::sqrt(3.0)) * par.mu_0);
+}
+
+/// g of a direction of shear, what it has of the friction in triaxial compression         CONE-1
+template <class P, class T, int N>
+T share(const P& par, const Sym<T, N>& s) {
+  return cone::share(par.shape, slope(par), s);
+}
+/// The same in simple shear.
+template <class P>
+auto shear_share(const P& par) {
+  return cone::shear_share(par.shape, slope(par));
 }
 
 /// MUI-2, written so that I = 0 needs no special case.
@@ -74,7 +94,8 @@ double density_at(const P& par, double p) {
   return par.rho_0 * (1.0 + p / par.K);
 }
 
-inline void check(double mu_0_value, double mu_d_value) {
+inline void check(double mu_0_value, double mu_d_value, double shape) {
+  cone::check(shape, mu_0_value);
   if (mu_d_value < mu_0_value)
     throw InputError("mu_d", "mu_d must be >= mu_0: friction grows with the inertial number");
 }
@@ -116,7 +137,7 @@ struct MuIElastoviscoplastic {
   static constexpr bool has_stress_memory = true;
   static constexpr bool iterates = false;
 
-  static constexpr std::array<ParamInfo, 8> parameters{
+  static constexpr std::array<ParamInfo, 9> parameters{
       {mu_i::mu_0,
        mu_i::mu_d,
        mu_i::I_0,
@@ -126,21 +147,22 @@ struct MuIElastoviscoplastic {
        mu_i::K,
        {"G", "G", "Pa",
         "numerical shear modulus (default 4K, from where on results stop depending on it)",
-        Need::optional, 0.0, positive, Scale::log}}};
+        Need::optional, 0.0, positive, Scale::log},
+       cone::shape}};
   static constexpr std::array<StateField, 0> state{};
 
   template <class T>
   struct Params {
-    T mu_0, mu_d, I_0, d, rho_p, rho_0, K, G;
+    T mu_0, mu_d, I_0, d, rho_p, rho_0, K, G, shape;
     static Params from(std::span<const T> t) {
-      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7]};
+      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8]};
     }
   };
   template <class T>
   using State = std::array<T, 0>;
 
   static void complete(std::vector<double>& t) {
-    mu_i::check(t[0], t[1]);
+    mu_i::check(t[0], t[1], t[8]);
     if (std::isnan(t[7])) t[7] = 4.0 * t[6];
   }
 
@@ -154,8 +176,13 @@ struct MuIElastoviscoplastic {
     const T tau_trial = shear_norm(s_trial);
     // MUI-4: (τ_tr − τ)(S_2 − τ) = α(τ − S_0), its smaller root without cancellation;
     // B² − 4H = (τ_tr − S_2 + α)² + 4α(S_2 − S_0)
-    const T S_0 = P.mu_0 * p;
-    const T S_2 = P.mu_d * p;
+    T S_0 = P.mu_0 * p;
+    T S_2 = P.mu_d * p;
+    if (!cone::is_circle(P.shape)) {  // s keeps the direction of the trial state
+      const T g = mu_i::share(P, s_trial);
+      S_0 = S_0 * g;
+      S_2 = S_2 * g;
+    }
     const T alpha = P.G * inc.dt * (P.I_0 / P.d) * root(T(p * (T(1.0) / P.rho_p)));
     const T B = S_2 + tau_trial + alpha;
     const T H = S_2 * tau_trial + S_0 * alpha;
@@ -183,22 +210,28 @@ struct MuIElastoviscoplastic {
 
   /// dp/dt = −K(ρ/ρ0) tr D;  ds/dt = 2G(D′ − γ̇_p s/(2τ)) with τ = μ(I(γ̇_p))p turned round:
   /// γ̇_p = (I_0/d)√(p/ρ_p)(τ − S_0)/(S_2 − τ). Where μ_d = μ_0 the law does not depend on the rate,
-  /// and consistency with τ = μ_0 p gives γ̇_p = s:D′/τ − μ_0 ṗ/G.
+  /// and consistency with τ = μ_0 g p gives γ̇_p = s:D′/τ − μ_0(gṗ + pġ)/G, where g is that of
+  /// CONE-1.
   template <class T, int N>
   static void rate(const Params<T>& P, const Sym<T, N>& stress, const State<T>&, const T& density,
                    const Sym<T, N>& D, Branch branch, Sym<T, N>& stress_rate, State<T>&) {
     const T p = mu_i::pressure_of(P, density);
     const T K_now = select(density < P.rho_0, T(0.0), T(P.K * density / P.rho_0));
     const Sym<T, N> s = deviator(stress);
-    stress_rate = (T(2.0) * P.G) * deviator(D) + Sym<T, N>::isotropic(K_now * trace(D));
+    const Sym<T, N> elastic = (T(2.0) * P.G) * deviator(D);
+    stress_rate = elastic + Sym<T, N>::isotropic(K_now * trace(D));
     if (branch == Branch::elastic) return;
     const T tau = shear_norm(s);
     const auto sheared = tau > T(0.0);  // without shear stress nothing flows, also at p = 0
     const T divisor = select(sheared, tau, T(1.0));
     const auto rate_dependent = P.mu_d > P.mu_0;
-    const T room = select(rate_dependent, T(P.mu_d * p - tau), T(1.0));
-    const T viscous = (P.I_0 / P.d) * root(T(p / P.rho_p)) * (tau - P.mu_0 * p) / room;
-    const T plastic = contract(s, deviator(D)) / divisor + P.mu_0 * K_now * trace(D) / P.G;
+    const T g = mu_i::share(P, s);
+    const T room = select(rate_dependent, T(P.mu_d * g * p - tau), T(1.0));
+    const T viscous = (P.I_0 / P.d) * root(T(p / P.rho_p)) * (tau - P.mu_0 * g * p) / room;
+    T plastic = contract(s, deviator(D)) / divisor + P.mu_0 * g * K_now * trace(D) / P.G;
+    if (!cone::is_circle(P.shape))
+      plastic =
+          plastic - P.mu_0 * g * p / P.G * cone::share_rate(P.shape, mu_i::slope(P), s, elastic);
     const T gamma_dot_p = select(rate_dependent, viscous, plastic);
     stress_rate = stress_rate - select(sheared, T(P.G * gamma_dot_p / divisor), T(0.0)) * s;
   }
@@ -214,14 +247,15 @@ struct MuIElastoviscoplastic {
   /// τ of steady shear under p > 0: what it flows at, however it got there              MUI-5
   template <class T>
   static T steady_shear_stress(const Params<T>& P, const T& p, const T& gamma_dot) {
-    return mu_i::friction(P, mu_i::inertial_number(P, p, gamma_dot)) * p;
+    return mu_i::friction(P, mu_i::inertial_number(P, p, gamma_dot)) * mu_i::shear_share(P) * p;
   }
 
   /// τ − μ_0 p
   template <class T, int N>
   static T yield(const Params<T>& P, const Sym<T, N>& stress, const State<T>&, const T&,
                  const Sym<T, N>&) {
-    return shear_norm(deviator(stress)) - P.mu_0 * pressure(stress);
+    const Sym<T, N> s = deviator(stress);
+    return shear_norm(s) - P.mu_0 * mu_i::share(P, s) * pressure(stress);
   }
 
   template <class T, int N>
@@ -259,10 +293,13 @@ struct MuIElastoviscoplastic {
   /// surface.
   static InitialPoint initial(const Params<double>& P, const InitialConditions& given) {
     const InitialPoint point = mu_i::rest_state(P, given);
-    const double limit = P.mu_0 * pressure(point.stress);
-    if (shear_norm(deviator(point.stress)) > limit * (1.0 + 1e-12))
-      throw InputError(given.sigma ? "sigma" : "K0",
-                       "the initial stress is beyond yield: tau/p must be <= mu_0 at rest");
+    const Sym<double, 6> s = deviator(point.stress);
+    const double limit = P.mu_0 * mu_i::share(P, s) * pressure(point.stress);
+    if (shear_norm(s) > limit * (1.0 + 1e-12))
+      throw InputError(
+          given.sigma ? "sigma" : "K0",
+          "the initial stress is beyond yield: tau/p must be <= mu_0 at rest" +
+              std::string(cone::is_circle(P.shape) ? "" : ", in its direction of shear"));
     return point;
   }
 
@@ -284,7 +321,8 @@ inline constexpr ParamInfo r{"r",  "r",      "1/s",     "regularising shear rate
                              1e-4, positive, Scale::log};
 
 /// What the forms share whose shear stress is a viscosity's, s = 2ηD′: all but η(p, γ̇) itself,
-/// which is Law::effective_viscosity().
+/// which is Law::effective_viscosity() in triaxial compression; elsewhere it is less by the share
+/// of D′.
 template <class Law>
 struct Viscous {
   template <class T>
@@ -296,7 +334,7 @@ struct Viscous {
   /// τ of steady shear under p > 0.
   template <class Par, class T>
   static T steady_shear_stress(const Par& P, const T& p, const T& gamma_dot) {
-    return Law::effective_viscosity(P, p, gamma_dot) * gamma_dot;
+    return Law::effective_viscosity(P, p, gamma_dot) * mu_i::shear_share(P) * gamma_dot;
   }
 
   template <class Par, class T, int N>
@@ -306,7 +344,8 @@ struct Viscous {
     // a step of no duration has no viscous stress; a NaN stays one
     const T inv_dt = select(inc.dt > T(0.0), T(T(1.0) / inc.dt), T(T(0.0) * inc.dt));
     const Sym<T, N> D_dev = inv_dt * deviator(inc.strain);
-    const T eta = Law::effective_viscosity(P, p, T(T(2.0) * shear_norm(D_dev)));
+    const T eta =
+        Law::effective_viscosity(P, p, T(T(2.0) * shear_norm(D_dev))) * mu_i::share(P, D_dev);
     const Sym<T, N> viscous = (T(2.0) * eta) * D_dev;
     const Sym<T, N> next = viscous - Sym<T, N>::isotropic(p);
     const auto failed = negated(finite(T(contract(next, next))) && inc.density > T(0.0));
@@ -346,7 +385,10 @@ struct Viscous {
 
   template <class Par, class T, int N>
   static T viscosity(const Par& P, const Sym<T, N>&, const T& density, const Sym<T, N>& D) {
-    return Law::effective_viscosity(P, mu_i::pressure_of(P, density), mu_i::shear_rate(D));
+    const Sym<T, N> D_dev = deviator(D);
+    return Law::effective_viscosity(P, mu_i::pressure_of(P, density),
+                                    T(T(2.0) * shear_norm(D_dev))) *
+           mu_i::share(P, D_dev);
   }
 
   template <class Par, class T, int N>
@@ -385,18 +427,19 @@ struct MuIRegularised : mu_i::Viscous<MuIRegularised> {
   static constexpr std::string_view doc =
       "weakly compressible mu(I) as a viscosity made finite by r: creeps, needs tiny steps";
 
-  static constexpr std::array<ParamInfo, 8> parameters{
-      {mu_i::mu_0, mu_i::mu_d, mu_i::I_0, mu_i::d, mu_i::rho_p, mu_i::rho_0, mu_i::K, mu_i::r}};
+  static constexpr std::array<ParamInfo, 9> parameters{{mu_i::mu_0, mu_i::mu_d, mu_i::I_0, mu_i::d,
+                                                        mu_i::rho_p, mu_i::rho_0, mu_i::K, mu_i::r,
+                                                        cone::shape}};
 
   template <class T>
   struct Params {
-    T mu_0, mu_d, I_0, d, rho_p, rho_0, K, r;
+    T mu_0, mu_d, I_0, d, rho_p, rho_0, K, r, shape;
     static Params from(std::span<const T> t) {
-      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7]};
+      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8]};
     }
   };
 
-  static void complete(std::vector<double>& t) { mu_i::check(t[0], t[1]); }
+  static void complete(std::vector<double>& t) { mu_i::check(t[0], t[1], t[8]); }
 
   /// MUI-3: η = μ_0 p/√(γ̇² + r²) + (μ_d − μ_0) p d/(I_0 √(p/ρ_p) + d γ̇)
   template <class T>

@@ -19,7 +19,7 @@ struct MuIBarkerGray : mu_i::Viscous<MuIBarkerGray> {
   static constexpr std::string_view doc =
       "weakly compressible mu(I) with the well-posed flow curve of Barker & Gray (2017): creeps";
 
-  static constexpr std::array<ParamInfo, 11> parameters{
+  static constexpr std::array<ParamInfo, 12> parameters{
       {mu_i::mu_0,
        mu_i::mu_d,
        mu_i::I_0,
@@ -34,20 +34,23 @@ struct MuIBarkerGray : mu_i::Viscous<MuIBarkerGray> {
         not_negative, Scale::linear},
        {"I_1", "I_1", "-",
         "inertial number at which the low branch ends (default: where mu(I) becomes well-posed)",
-        Need::optional, 0.0, positive, Scale::log}}};
+        Need::optional, 0.0, positive, Scale::log},
+       cone::shape}};
 
   template <class T>
   struct Params {
-    T mu_0, mu_d, I_0, d, rho_p, rho_0, K, r, alpha, mu_inf, I_1;
+    T mu_0, mu_d, I_0, d, rho_p, rho_0, K, r, alpha, mu_inf, I_1, shape;
     static Params from(std::span<const T> t) {
-      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10]};
+      return {t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11]};
     }
   };
 
   static void complete(std::vector<double>& t) {
-    mu_i::check(t[0], t[1]);
+    mu_i::check(t[0], t[1], t[11]);
     if (!std::isnan(t[10])) return;
-    const double I_1 = lower_neutral_inertial_number(t[0], t[1], t[2]);
+    // well-posedness is a matter of simple shear
+    const double g = cone::shear_share(t[11], std::sqrt(3.0) * t[0]);
+    const double I_1 = lower_neutral_inertial_number(g * t[0], g * t[1], t[2]);
     if (!(I_1 > 0.0))
       throw InputError(
           "I_1",

@@ -64,12 +64,22 @@ std::string nearest_name(std::string_view misspelt, std::span<const std::string_
 
 std::vector<double> parameter_vector(std::string_view law, std::span<const ParamInfo> table,
                                      const std::map<std::string, double>& given) {
-  std::vector<std::string_view> names;
-  for (const ParamInfo& info : table) names.push_back(info.name);
+  std::vector<std::string_view> names, known;
+  for (const ParamInfo& info : table) {
+    names.push_back(info.name);
+    known.push_back(info.name);
+    if (!info.angle.name.empty()) known.push_back(info.angle.name);
+  }
   for (const auto& [name, x] : given) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    for (const ParamInfo& info : table)
+      if (info.angle.name == name)
+        throw InputError(name, name + " is what an input file may say instead of " +
+                                   std::string(info.name) + ": here the parameter is " +
+                                   std::string(info.name) +
+                                   " itself (models/cone.hpp turns an angle into it)");
     std::string message = std::string(law) + " has no parameter '" + name + "'";
-    const std::string near = nearest_name(name, names);
+    const std::string near = nearest_name(name, known);
     if (!near.empty()) {
       message += "; did you mean '" + near + "'?";
     } else {
@@ -86,8 +96,12 @@ std::vector<double> parameter_vector(std::string_view law, std::span<const Param
     const auto found = given.find(name);
     if (found == given.end()) {
       if (info.need == Need::required)
-        throw InputError(name, std::string(law) + " needs " + name + " (" + std::string(info.doc) +
-                                   "), a number " + to_string(info.range) + unit);
+        throw InputError(name,
+                         std::string(law) + " needs " + name + " (" + std::string(info.doc) +
+                             "), a number " + to_string(info.range) + unit +
+                             (info.angle.name.empty() ? ""
+                                                      : ", or " + std::string(info.angle.name) +
+                                                            ", its friction angle in degrees"));
       theta.push_back(info.need == Need::defaulted ? info.value
                                                    : std::numeric_limits<double>::quiet_NaN());
       continue;
@@ -97,6 +111,8 @@ std::vector<double> parameter_vector(std::string_view law, std::span<const Param
       throw InputError(name, name + " = " + number(x) + unit +
                                  " is out of range: " + std::string(info.doc) + " must be " +
                                  to_string(info.range) + unit);
+    if (!info.words.empty() && x != std::floor(x))
+      throw InputError(name, name + " is the position of a word, and " + number(x) + " is none");
     theta.push_back(x);
   }
   return theta;

@@ -46,6 +46,14 @@ struct ParamInfo {
   double value = std::numeric_limits<double>::quiet_NaN();  ///< default, if need == defaulted
   Range range{};
   Scale scale = Scale::linear;  ///< natural scale for fitting
+  /// What an input file may give instead of it; none: an empty name.
+  struct Angle {
+    std::string_view name;                             ///< key of a friction angle [°]
+    double (*parameter_of)(double degrees) = nullptr;  ///< the parameter of that angle
+  };
+  Angle angle{};
+  /// Where it is not empty, the value is one of these words, and the number its position.
+  std::span<const std::string_view> words{};
 };
 
 struct StateField {

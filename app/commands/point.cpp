@@ -7,6 +7,7 @@
 #include "app/commands/command.hpp"
 #include "app/commands/sweep.hpp"
 #include "input/file_kind.hpp"
+#include "input/read_law.hpp"
 #include "input/shipped_input.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
@@ -34,7 +35,15 @@ toml::table resolved(const input::InputFile& input, const input::PointTestFile& 
     else
       law.insert_or_assign(key, text);
   }
-  for (const auto& [key, x] : file.law.values) law.insert_or_assign(key, x);
+  for (const ParamInfo& parameter : find_law(file.law).parameters) {
+    const auto value = file.law.values.find(std::string(parameter.name));
+    if (value == file.law.values.end()) continue;
+    if (parameter.words.empty())
+      law.insert_or_assign(parameter.name, value->second);
+    else
+      law.insert_or_assign(parameter.name, input::word_of(parameter, value->second));
+    if (!parameter.angle.name.empty()) law.erase(parameter.angle.name);  // it has said its own
+  }
   const point::Settings& settings = file.test.settings;
   toml::table integration;
   integration.insert(

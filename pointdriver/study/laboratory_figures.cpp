@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "models/cone.hpp"
+
 namespace repose::point {
 namespace {
 
@@ -232,7 +234,7 @@ class Reader {
       best->b = 0.5;  // associated flow at constant volume and no strain along: s_zz = 0
     else
       best->b = s[0] > s[2] ? (s[1] - s[2]) / (s[0] - s[2]) : nan;
-    best->critical = critical_friction_angle(critical_ratio(), best->b);
+    best->critical = critical_friction_angle(critical_ratio(best->b), best->b);
     return best;
   }
 
@@ -249,13 +251,18 @@ class Reader {
     return std::min({std::abs(e[0]), std::abs(e[1]), std::abs(e[2])});
   }
 
-  /// q/p of the law's critical state: M of clays, √3 μ_0 of grains as they come to rest.
-  double critical_ratio() const {
-    if (const int i = parameter_index(law_.parameters, "M"); i >= 0)
-      return theta_[static_cast<std::size_t>(i)];
-    if (const int i = parameter_index(law_.parameters, "mu_0"); i >= 0)
-      return std::sqrt(3.0) * theta_[static_cast<std::size_t>(i)];
-    return nan;
+  double parameter(std::string_view name) const {
+    const int i = parameter_index(law_.parameters, name);
+    return i < 0 ? nan : theta_[static_cast<std::size_t>(i)];
+  }
+
+  /// q/p of the law's critical state at the intermediate stress b: M of clays, √3 μ_0 of grains as
+  /// they come to rest, on their cone.
+  double critical_ratio(double b) const {
+    double M = parameter("M");
+    if (std::isnan(M)) M = std::sqrt(3.0) * parameter("mu_0");
+    if (std::isnan(M) || std::isnan(b)) return M;
+    return M * cone::share(parameter("shape"), M, deviator(Sym<double, 6>{{-1.0, -b, 0.0}}));
   }
 
   /// The stage driven again up to each goal in turn, quantities that rise with the driver's (q,

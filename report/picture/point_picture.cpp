@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include "models/cone.hpp"
+
 namespace repose::report {
 namespace {
 
@@ -70,6 +72,16 @@ class Source {
     const int i = point::parameter_index(law_.parameters, name);
     return i < 0 ? std::nan("") : theta_[static_cast<std::size_t>(i)];
   }
+  /// The slope q/p at rest of a law that has an M, in the direction of shear of a row, and in
+  /// triaxial compression (1) or extension (−1).
+  double slope_at(std::size_t row) const {
+    const double M = parameter("M");
+    return M * cone::share(parameter("shape"), M, deviator(curve_.rows[row].stress));
+  }
+  double slope(double cos_3_theta) const {
+    const double M = parameter("M");
+    return cone::is_circle(parameter("shape")) ? M : M / cone::inverse_share(M, cos_3_theta);
+  }
   /// "ε_{a} (logarithmic, %)"
   std::string strain_label(std::string_view symbol) const {
     return fmt::format("{} ({}, %)", symbol, point::name_of(test_.path.measure));
@@ -98,15 +110,20 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
-/// q = M√(p(p_c − p)), mirrored to −q where the curve goes into extension.
-void yield_surface(Axes& axes, const std::string& name, double M, double p_c, double shift,
+/// The slopes q/p of a surface above and below the axis of p.
+struct Slopes {
+  double upper, lower;
+};
+
+/// q = M√(p(p_c − p)), and below the axis where the curve goes into extension.
+void yield_surface(Axes& axes, const std::string& name, Slopes M, double p_c, double shift,
                    bool extension, Style style) {
   std::vector<double> p, q;
   const int n = 120;
   for (int i = 0; i <= n; ++i) {
     const double angle = (extension ? 2.0 : 1.0) * std::numbers::pi * i / n;
     p.push_back(0.5 * p_c * (1.0 + std::cos(angle)) - shift);
-    q.push_back(0.5 * p_c * M * std::sin(angle));
+    q.push_back(0.5 * p_c * (2 * i > n && extension ? M.lower : M.upper) * std::sin(angle));
   }
   axes.dashed(name, p, q, style);
 }
@@ -137,14 +154,16 @@ void stages(const Figure& figure, Axes& axes, const Source& source, const std::v
   stages(figure, axes, source, x, y, source.all_stages());
 }
 
-/// The slope M of the yield surface at a row: the law's own at rest; where the material flows at a
-/// rate that raises it, that of the ellipse through the stress, q² = M²p(p_c − p).
-double slope_of_surface(const Source& source, std::size_t row) {
-  const double M = source.parameter("M");
-  if (!(source.has_I() && source.column(Quantity::I)[row] > 0.0)) return M;
+/// The slopes of the yield surface at a row: the law's own at rest, the upper one in the row's
+/// direction of shear; where the material flows at a rate that raises them, both in the ratio of
+/// the ellipse through the stress, q² = M²p(p_c − p).
+Slopes slopes_of_surface(const Source& source, std::size_t row, Slopes at_rest) {
+  if (!(source.has_I() && source.column(Quantity::I)[row] > 0.0)) return at_rest;
   const double p = source.column(Quantity::p)[row], p_c = source.column(Quantity::p_c)[row];
   const double through = std::abs(source.column(Quantity::q)[row]) / std::sqrt(p * (p_c - p));
-  return std::isfinite(through) ? through : M;
+  const double growth = through / source.slope_at(row);
+  if (!std::isfinite(growth)) return at_rest;
+  return {at_rest.upper * growth, at_rest.lower * growth};
 }
 
 void stress_path(Figure& figure, const Source& source, bool undrained) {
@@ -155,8 +174,11 @@ void stress_path(Figure& figure, const Source& source, bool undrained) {
   const auto p = source.column(Quantity::p, kPa);
   const auto q = source.column(Quantity::q, kPa);
   const bool extension = !q.empty() && *std::min_element(q.begin(), q.end()) < -1e-6 * largest(p);
-  const double M = source.parameter("M");
-  if (std::isfinite(M)) {
+  if (std::isfinite(source.parameter("M"))) {
+    const std::size_t last = p.size() - 1;
+    const bool ends_below = !q.empty() && q.back() < 0.0;
+    const Slopes M{ends_below || q.empty() ? source.slope(1.0) : source.slope_at(last),
+                   source.slope(-1.0)};
     double reach = 1.05 * largest(p);
     if (source.has_p_c() && !p.empty()) {
       const double shift =
@@ -164,14 +186,14 @@ void stress_path(Figure& figure, const Source& source, bool undrained) {
       const auto p_c = source.column(Quantity::p_c, kPa);
       yield_surface(axes, "yield, start", M, p_c.front(), shift, extension, {Colour::grey, 1.2});
       if (std::abs(p_c.back() - p_c.front()) > 1e-3 * p_c.front())
-        yield_surface(axes, "yield, end", slope_of_surface(source, p.size() - 1), p_c.back(), shift,
+        yield_surface(axes, "yield, end", slopes_of_surface(source, last, M), p_c.back(), shift,
                       extension, {Colour::orange, 1.2});
       reach = std::max({reach, p_c.front(), p_c.back()});
     }
-    const std::array<double, 2> line_p{0.0, reach}, line_q{0.0, M * reach};
+    const std::array<double, 2> line_p{0.0, reach}, line_q{0.0, M.upper * reach};
     axes.line("critical state", line_p, line_q, {Colour::black, 1.0});
     if (extension) {
-      const std::array<double, 2> lower{0.0, -M * reach};
+      const std::array<double, 2> lower{0.0, -M.lower * reach};
       axes.line("", line_p, lower, {Colour::black, 1.0});
     }
   }
@@ -307,8 +329,11 @@ void shear_panels(Figure& figure, const Source& source) {
         x.push_back(I[i]);
         y.push_back(mu[i]);
       }
-    const double mu_0 = source.parameter("mu_0"), mu_d = source.parameter("mu_d"),
-                 I_0 = source.parameter("I_0");
+    double mu_0 = source.parameter("mu_0"), mu_d = source.parameter("mu_d");
+    const double I_0 = source.parameter("I_0");
+    const double share = cone::shear_share(source.parameter("shape"), std::sqrt(3.0) * mu_0);
+    mu_0 *= share;
+    mu_d *= share;
     if (std::isfinite(mu_0) && !x.empty()) {
       const auto [low, high] = std::minmax_element(x.begin(), x.end());
       for (int i = 0; i <= 80; ++i) {

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "models/cone.hpp"
 #include "study/accuracy/grain_layer.hpp"
 
 namespace repose::study {
@@ -92,13 +93,16 @@ class FlowReader {
     need(body_.law.name == "mu_i" &&
              (form == body_.law.options.end() || form->second == "elastoviscoplastic"),
          "mu_i grains, form = \"elastoviscoplastic\"");
-    need(value("mu_0") < std::tan(tilt()) && std::tan(tilt()) < value("mu_d"),
+    // of simple shear, where the cone is not round
+    const double share = cone::shear_share(value("shape"), std::sqrt(3.0) * value("mu_0"));
+    const double mu_0 = share * value("mu_0"), mu_d = share * value("mu_d");
+    need(mu_0 < std::tan(tilt()) && std::tan(tilt()) < mu_d,
          "tilt_deg between the angles of mu_0 and mu_d");
     return {.H = body_.size[1],
             .g = scene_.gravity,
             .tilt = tilt(),
-            .mu_0 = value("mu_0"),
-            .mu_d = value("mu_d"),
+            .mu_0 = mu_0,
+            .mu_d = mu_d,
             .I_0 = value("I_0"),
             .d = value("d"),
             .rho_p = value("rho_p"),

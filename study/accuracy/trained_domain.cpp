@@ -80,6 +80,9 @@ void compare_body(const mpm::Scene& scene, const mpm::Body& body,
                                    : fmt::format("{} of the form {}", info.name, form));
     return;
   }
+  if (const auto shape = body.law.values.find("shape");
+      shape != body.law.values.end() && shape->second != 0.0)
+    reasons.emplace_back("a cone of friction that is no circle");
   const double height = body.size[1];
   const auto outside = [&](std::string_view what, double x, double lower, double upper) {
     if (!is_between(x, lower, upper))

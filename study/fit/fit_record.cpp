@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "input/read_law.hpp"
 #include "io/fingerprint.hpp"
 #include "io/json.hpp"
 #include "io/progress.hpp"
@@ -338,6 +339,10 @@ std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
   for (const ParamInfo& p : file.info->parameters) {
     const auto value = law.values.find(std::string(p.name));
     if (value == law.values.end()) continue;
+    if (!p.words.empty()) {
+      text += fmt::format("{} = \"{}\"\n", p.name, input::word_of(p, value->second));
+      continue;
+    }
     std::string words = "fixed";
     for (std::size_t i = 0; i < file.free.size(); ++i)
       if (file.law_key[i] == p.name) words = comment(i);

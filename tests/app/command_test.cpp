@@ -132,8 +132,10 @@ TEST_F(CommandTest, Models) {
     EXPECT_NE(list.out.find(name), std::string::npos);
   const Outcome law = run({"models", "mu_i"});
   EXPECT_EQ(law.exit, 0);
-  EXPECT_NE(law.out.find("\n  ρ_0     rho_0  kg/m³  required  > 0    bulk density at p = 0\n"),
-            std::string::npos)
+  EXPECT_NE(
+      law.out.find(
+          "\n  ρ_0     rho_0  kg/m³  required  > 0                     bulk density at p = 0\n"),
+      std::string::npos)
       << law.out;
   // what follows from the state is listed under a heading of its own
   const Outcome both = run({"models", "critical_state_mu_i"});

@@ -1,5 +1,6 @@
 // `repose point` from input file to result folder: messages, exit codes, files; and every ready
 // test.
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -231,6 +232,41 @@ TEST_F(PointCommand, writes_its_files_and_the_resolved_input_gives_the_same_bits
   EXPECT_TRUE(summary.contains("seed"));
   ASSERT_EQ(run((folder_ / "a/input.toml").string(), "b"), 0);
   EXPECT_EQ(read("b/curve.csv"), curve);
+}
+
+// Friction may be an angle, the cone is a word; what a result says of them runs again to the same
+// bits.
+TEST_F(PointCommand, friction_as_an_angle_and_the_shape_of_its_cone) {
+  std::string given = good;
+  given.replace(given.find("M = 0.888"), 9, "phi = 22.7\nshape = \"matsuoka_nakai\"");
+  given.replace(given.find("axial_strain = 0.1"), 18, "axial_strain = -0.3");
+  ASSERT_EQ(run(write("t.toml", given), "a"), 0);
+  const std::string resolved = read("a/input.toml");
+  EXPECT_TRUE(contains(resolved, "shape = 'matsuoka_nakai'")) << resolved;
+  EXPECT_FALSE(contains(resolved, "phi")) << resolved;
+  ASSERT_EQ(run((folder_ / "a/input.toml").string(), "b"), 0);
+  EXPECT_EQ(read("b/curve.csv"), read("a/curve.csv"));
+  // extension has the friction angle of compression: 6 sin φ/(3 + sin φ) at critical state
+  const double sine = std::sin(22.7 * std::acos(-1.0) / 180.0);
+  std::istringstream rows(read("a/curve.csv"));
+  std::string row, last;
+  while (std::getline(rows, row)) last = row;
+  std::vector<double> cells;
+  std::istringstream fields(last);
+  for (std::string cell; std::getline(fields, cell, ',');) cells.push_back(std::stod(cell));
+  EXPECT_NEAR(-cells[6] / cells[5], 6.0 * sine / (3.0 + sine), 1e-3);
+
+  EXPECT_TRUE(contains(problems(given, {"law.phi=90"}), "law.phi = 90 ° is out of range"));
+  EXPECT_TRUE(contains(problems(given, {"law.M=0.9"}), "give either law.M or law.phi"));
+  EXPECT_TRUE(
+      contains(problems(given, {"law.shape=matsuoka_naki"}), "did you mean \"matsuoka_nakai\"?"));
+  EXPECT_TRUE(contains(problems(given, {"law.shape=1"}), "got the integer 1"));
+  std::string typo = given;
+  typo.replace(typo.find("phi ="), 5, "phy =");
+  EXPECT_TRUE(contains(problems(typo), "did you mean 'phi'?"));
+  std::string none = good;
+  none.replace(none.find("M = 0.888\n"), 10, "");
+  EXPECT_TRUE(contains(problems(none), "or phi, its friction angle in degrees"));
 }
 
 // A law that says its own I has it as a column in every kind of test; flow beyond what it is for is

@@ -109,6 +109,7 @@ TEST_F(FitCommand, FindsTheParametersAndWritesALawThatReadsBack) {
   law.throw_if_bad();
   EXPECT_EQ(spec.values.at("M"), report["parameters"]["M"]["value"].get<double>());
   EXPECT_EQ(spec.values.at("lambda"), 0.161);
+  EXPECT_EQ(spec.values.at("shape"), 0.0);
 }
 
 TEST_F(FitCommand, ShardsMergeToTheSameResult) {
@@ -178,6 +179,12 @@ TEST_F(FitCommand, TellsWhatIsWrongAndWhere) {
             std::string::npos);
   EXPECT_NE(complaint(replaced(good, "nu = 0.3", "nu = 0.3\nM = 1.0"))
                 .find("M is fixed in [law] and free in [fit]: leave out one"),
+            std::string::npos);
+  EXPECT_NE(complaint(replaced(good, "nu = 0.3", "nu = 0.3\nphi = 22.0"))
+                .find("M is fixed in [law] and free in [fit]: leave out one"),
+            std::string::npos);
+  EXPECT_NE(complaint(replaced(good, "[fit]", "[fit]\nshape = { lower = 0.1, upper = 0.9 }"))
+                .find("shape is a word, not a number: give it in [law]"),
             std::string::npos);
   EXPECT_NE(complaint(replaced(good, "axial_strain = 0.1", "axial_strain = 0.05"))
                 .find("is not on the way of the test, which leads from 0 to 0.05"),

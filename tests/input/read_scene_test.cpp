@@ -173,9 +173,11 @@ TEST(ReadSceneErrors, unknown_keys) {
             "s.toml:18:1: unknown key 'water' in [grid]; [grid] takes h, kernel, points_per_cell");
   EXPECT_EQ(problems(granular + "[outptu]\n"),
             "s.toml:18:2: unknown table 'outptu' in the file; did you mean 'output'?");
-  EXPECT_EQ(problems(replaced(granular, "mu_0 =", "mu0 =")),
-            "s.toml:7:7: mu_i needs mu_0 (friction coefficient at rest), a number > 0\n"
-            "s.toml:9:1: mu_i has no parameter 'mu0'; did you mean 'mu_0'?");
+  EXPECT_EQ(
+      problems(replaced(granular, "mu_0 =", "mu0 =")),
+      "s.toml:7:7: mu_i needs mu_0 (friction coefficient at rest), a number > 0, or phi_0, its "
+      "friction angle in degrees\n"
+      "s.toml:9:1: mu_i has no parameter 'mu0'; did you mean 'mu_0'?");
   EXPECT_EQ(problems(replaced(granular, "name =", "from = \"regularised\"\nname =")),
             "s.toml:8:1: mu_i has no option 'from'; its option is 'form'");
 }

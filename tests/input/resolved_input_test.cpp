@@ -1,4 +1,5 @@
 // The resolved input: running it again gives the same scene, whatever was in the first one.
+#include <cmath>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -98,6 +99,25 @@ TEST(ResolvedInput, keeps_every_digit_and_every_kind_of_key) {
   expect_same(first, reread(text));
   EXPECT_EQ(first.scene.bodies[0].name, "a \"b\" \\ c");
   EXPECT_TRUE(first.scene.bodies[1].lithostatic);
+}
+
+// Friction as an angle becomes the parameter that it gives, the shape of the cone stays a word.
+TEST(ResolvedInput, has_friction_once_and_the_cone_by_name) {
+  const std::string given =
+      "[scene]\nend_time = 0.1\n[domain]\nsize = [0.9, 0.9]\n[[body]]\nsize = [0.3, 0.3]\n"
+      "law = { name = \"mu_i\", phi_0 = 21.3, phi_d = 33.7, shape = \"matsuoka_nakai\", I_0 = 0.1, "
+      "d = "
+      "1e-3, rho_p = 2e3, rho_0 = 1300, K = 1e6 }\n[grid]\nh = 0.1\n";
+  const SceneFile first = reread(given);
+  const LawSpec& law = first.scene.bodies[0].law;
+  // 2√3 sin φ/(3 − sin φ)
+  const double sine = std::sin(21.3 * std::acos(-1.0) / 180.0);
+  EXPECT_DOUBLE_EQ(law.values.at("mu_0"), 2.0 * std::sqrt(3.0) * sine / (3.0 - sine));
+  EXPECT_FALSE(law.values.contains("phi_0"));
+  EXPECT_EQ(law.values.at("shape"), 1.0);
+  const std::string text = resolved_input(first, "From a test");
+  EXPECT_NE(text.find("\nshape = \"matsuoka_nakai\""), std::string::npos) << text;
+  expect_same(first, reread(text));
 }
 
 TEST(ResolvedInput, keeps_the_implicit_viscosity) {

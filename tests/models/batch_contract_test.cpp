@@ -174,8 +174,12 @@ TYPED_TEST(BatchContract, OutputsAreThoseOfTheLaw) {
       const LawPoint<L> after = columns.point(i);
       const auto sigma = LawPoint<L>::template truncated<TypeParam::components>(after.stress);
       const auto strain = LawPoint<L>::template truncated<TypeParam::components>(task.strain);
+      // the share of a cone adds 16: cos 3θ, a determinant, is known to 20 ε, of which g has a
+      // third; the root of its cubic, terms of up to 27 over a slope of 15, to 8
+      const bool on_cone = example.spec.values.contains("shape");
+      const double units = on_cone ? 48.0 : 32.0;
       const auto near = [&](double x, double expected, double scale) {
-        EXPECT_NEAR(x, expected, 32.0 * epsilon * (std::abs(expected) + scale)) << example.label;
+        EXPECT_NEAR(x, expected, units * epsilon * (std::abs(expected) + scale)) << example.label;
       };
       near(after.density, task.point.density * std::exp(-trace(task.strain)), 0.0);
       const double M = L::modulus(P, sigma, after.state, after.density);
@@ -184,7 +188,11 @@ TYPED_TEST(BatchContract, OutputsAreThoseOfTheLaw) {
       // a viscosity μ p/γ̇ takes p from the density, K(ρ/ρ_0 − 1): an ε of ρ is εK of p
       const double eta = L::viscosity(P, sigma, after.density, (1.0 / example.time) * strain);
       const double p = pressure(after.stress);
-      near(columns.viscosity[i], eta, p > 0.0 ? eta * M / p : 0.0);
+      // and where a cone asks for the direction of D′, an ε of D turns that
+      const double deviation = largest(deviator(task.strain));
+      const double turned =
+          deviation > 0.0 ? eta * largest(task.strain) / deviation : eta / epsilon;
+      near(columns.viscosity[i], eta, (p > 0.0 ? eta * M / p : 0.0) + (on_cone ? turned : 0.0));
       const Sym<double, TypeParam::components> mean_stress =
           0.5 * (LawPoint<L>::template truncated<TypeParam::components>(task.point.stress) + sigma);
       near(columns.work[i], contract(mean_stress, strain),

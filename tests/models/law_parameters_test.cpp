@@ -104,7 +104,10 @@ TEST_P(LawParameters, MissingValueSaysWhatIsNeeded) {
       EXPECT_EQ(key, info.name);
       EXPECT_EQ(text, std::string(law().name) + " needs " + std::string(info.name) + " (" +
                           std::string(info.doc) + "), a number " + to_string(info.range) +
-                          unit(info));
+                          unit(info) +
+                          (info.angle.name.empty() ? ""
+                                                   : ", or " + std::string(info.angle.name) +
+                                                         ", its friction angle in degrees"));
     } else {
       EXPECT_EQ(text, "(accepted)") << info.name;
     }
@@ -161,7 +164,8 @@ TEST(LawDefaults, AndRangesAreThose) {
         {"p_ref", "1000 > 0"},
         {"rho_p", "2650 > 0"},
         {"p_sep", "0.01 > 0"},
-        {"p_shift", "0 >= 0"}}},
+        {"p_shift", "0 >= 0"},
+        {"shape", "0 [0, 1]"}}},
       {"mu_i",
        {{"mu_0", "> 0"},
         {"mu_d", "> 0"},
@@ -174,7 +178,8 @@ TEST(LawDefaults, AndRangesAreThose) {
         {"r", "0.0001 > 0"},
         {"alpha", "1.9 > 0"},
         {"mu_inf", "0.05 >= 0"},
-        {"I_1", "optional > 0"}}},
+        {"I_1", "optional > 0"},
+        {"shape", "0 [0, 1]"}}},
       {"newtonian", {{"eta", ">= 0"}, {"K", "> 0"}, {"alpha", "7 [1, 20]"}, {"rho_0", "> 0"}}},
       {"neo_hookean", {{"E", "> 0"}, {"nu", "[0, 0.5)"}, {"rho_0", "> 0"}}},
       {"critical_state_mu_i",
@@ -190,7 +195,8 @@ TEST(LawDefaults, AndRangesAreThose) {
         {"M_inf", "> 0"},
         {"I_M", "> 0"},
         {"I_v", "optional > 0"},
-        {"d", "> 0"}}}};
+        {"d", "> 0"},
+        {"shape", "0 [0, 1]"}}}};
   for (const LawInfo& law : all_laws())
     for (const ParamInfo& info : law.parameters) {
       const auto& of_law = expected.at(std::string(law.name));

@@ -33,6 +33,10 @@ inline std::vector<LawExample> examples_of(const LawInfo& law) {
     if (!law.option_key.empty()) s.options[std::string(law.option_key)] = option;
     return s;
   };
+  const auto with_cone = [](Values values) {
+    values["shape"] = 1.0;  // matsuoka_nakai
+    return values;
+  };
   std::vector<LawExample> list;
   if (name == "modified_cam_clay") {
     // the published column collapse; CSL through φ = 0.648 at 1 Pa
@@ -49,19 +53,25 @@ inline std::vector<LawExample> examples_of(const LawInfo& law) {
       sand["lambda"] /= 2.2;
       sand["kappa"] /= 2.2;
       list.push_back({"kaolin_in_ln_v", spec(sand), 1e5, 2e-2, 1.0});
+      list.push_back({"kaolin_in_ln_v_cone", spec(with_cone(sand)), 1e5, 2e-2, 1.0});
+      list.push_back({"column_cone", spec(with_cone(shifted)), 1e3, 1e-3, 1e-4});
     } else {
       list.push_back({"kaolin", spec(kaolin), 1e5, 2e-2, 1.0});
+      list.push_back({"kaolin_cone", spec(with_cone(kaolin)), 1e5, 2e-2, 1.0});
       list.push_back({"column_in_v", spec(column), 1e3, 1e-3, 1e-4});
     }
   } else if (name == "mu_i") {
     Values column{{"mu_0", 0.3819},  {"mu_d", 0.5718},  {"I_0", 0.279}, {"d", 0.0053},
                   {"rho_p", 2000.0}, {"rho_0", 1300.0}, {"K", 254800.0}};
     list.push_back({"column", spec(column), 1e3, 5e-3, 1e-4});
+    // (it yields, and flows steadily, after less strain)
+    list.push_back({"column_cone", spec(with_cone(column)), 1e3, 4e-3, 1e-4});
     column["K"] = 26000.0;
     list.push_back({"soft_column", spec(column), 1e3, 2e-2, 1e-4});
     if (option == "elastoviscoplastic") {
       column["mu_d"] = column["mu_0"];
       list.push_back({"constant_friction", spec(column), 1e3, 2e-2, 1e-4});
+      list.push_back({"constant_friction_cone", spec(with_cone(column)), 1e3, 2e-2, 1e-4});
     }
   } else if (name == "newtonian") {
     list.push_back(
@@ -76,6 +86,7 @@ inline std::vector<LawExample> examples_of(const LawInfo& law) {
                   {"p_ref", 1.0}, {"Gamma", 1.0 / 0.648}, {"rho_p", 2000.0}, {"d", 0.0053},
                   {"I_v", 0.5},   {"M_inf", 0.9904},      {"I_M", 0.1611}};
     list.push_back({"column", spec(grains), 1e3, 1e-3, 1e-4});
+    list.push_back({"column_cone", spec(with_cone(grains)), 1e3, 1e-3, 1e-4});
     grains.erase("I_v");
     list.push_back({"column_of_one_volume", spec(grains), 1e3, 1e-3, 1e-4});
     const Values kaolin{{"M", 0.888},  {"lambda", 0.161 / 2.2}, {"kappa", 0.062 / 2.2},

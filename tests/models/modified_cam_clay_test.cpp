@@ -54,9 +54,9 @@ TYPED_TEST_SUITE(CamClayUnit, Forms, LawName);
 template <class L>
 double yield_residual(const typename L::template Params<double>& P, const LawPoint<L>& at) {
   const double p = pressure(at.stress) + P.p_shift;
-  const double q = mises(at.stress);
+  const double q2_M2 = square(mises(at.stress) / P.slope(deviator(at.stress)));
   const double p_c = at.state[0];
-  return (q * q / (P.M * P.M) - p * (p_c - p)) / (q * q / (P.M * P.M) + p * p_c) / epsilon;
+  return (q2_M2 - p * (p_c - p)) / (q2_M2 + p * p_c) / epsilon;
 }
 
 TYPED_TEST(CamClayUnit, YieldConditionHoldsAfterEveryPlasticStep) {
@@ -73,8 +73,9 @@ TYPED_TEST(CamClayUnit, YieldConditionHoldsAfterEveryPlasticStep) {
       const double p_c = example.pressure * random.decade(-1.0, 2.0);
       const double p = x * p_c;
       const Sym<double, 6> direction = deviator(random.tensor(1.0));
-      point.stress = (P.M * p_c * std::sqrt(x * (1.0 - x)) / mises(direction)) * direction -
-                     Sym<double, 6>::isotropic(p - P.p_shift);
+      point.stress =
+          (P.slope(direction) * p_c * std::sqrt(x * (1.0 - x)) / mises(direction)) * direction -
+          Sym<double, 6>::isotropic(p - P.p_shift);
       point.state = {p_c, 0.0};
       point.density = L::density_at(P, 1e3, 1.0);
       Sym<double, 6> strain = random.tensor(random.decade(-9.0, -0.5));

@@ -49,12 +49,14 @@ double beyond_yield(const typename L::template Params<double>& P, const LawPoint
   if constexpr (L::name == "mu_i" && L::has_stress_memory) {
     // between the friction at rest and its limit the stress is that of the flow: the limit binds
     const double tau = shear_norm(deviator(point.stress));
-    return p + tau > 0.0 ? (tau - std::max(P.mu_0, P.mu_d) * p) / (p + tau) : 0.0;
+    const double g = mu_i::share(P, deviator(point.stress));
+    return p + tau > 0.0 ? (tau - std::max(P.mu_0, P.mu_d) * g * p) / (p + tau) : 0.0;
   } else if constexpr (L::name == "critical_state_mu_i") {
     // some I carries the stress; where the volume does not depend on it, no more than M_∞ does
     if (std::isfinite(L::inertial_number(P, point.stress, point.state))) return 0.0;
     if (P.volume_rate() > 0.0) return 1.0;
-    const double surface = square(mises(point.stress) / P.M_inf);
+    const double slope = P.M_inf / P.M * P.slope(deviator(point.stress));
+    const double surface = square(mises(point.stress) / slope);
     const double p_c = std::exp(point.state[0]);
     return (surface - p * (p_c - p)) / (surface + p * (p_c + p));
   } else if constexpr (L::state.size() > 0) {
