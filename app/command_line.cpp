@@ -103,9 +103,9 @@ io::ExitCode parse_and_run(std::span<const char* const> arguments) {
   root.require_subcommand(1);
   root.footer(examples);
   root.get_formatter()->column_width(32);
-  const std::vector<Command> commands{add_run(root),       add_check(root),  add_models(root),
-                                      add_point(root),     add_chart(root),  add_fit(root),
-                                      add_stability(root), add_report(root), add_schema(root)};
+  const std::vector<Command> commands{
+      add_run(root), add_check(root),     add_models(root),   add_point(root),  add_chart(root),
+      add_fit(root), add_stability(root), add_validate(root), add_report(root), add_schema(root)};
 
   if (arguments.size() < 2) {
     fmt::print(stderr, "{}", root.help());

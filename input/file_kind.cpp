@@ -15,7 +15,8 @@ constexpr std::array kinds{
     KindInfo{FileKind::scene, "scene", "a scene", "run"},
     KindInfo{FileKind::point_test, "test", "a point test", "point"},
     KindInfo{FileKind::fit, "fit", "a fit", "fit"},
-    KindInfo{FileKind::stability, "stability", "a set of stability maps", "stability"}};
+    KindInfo{FileKind::stability, "stability", "a set of stability maps", "stability"},
+    KindInfo{FileKind::benchmark, "case", "a validation case", "validate"}};
 
 const KindInfo& info_of(FileKind kind) {
   for (const KindInfo& info : kinds)
@@ -47,8 +48,8 @@ FileKind kind_of(const InputFile& file) {
         refuse(file, key.str(),
                fmt::format("unknown table '{}'; did you mean '{}'?", key.str(), near));
     refuse(file, "",
-           "a file needs [scene] (a scene), [test] (a point test), [fit] (a fit) or [stability] "
-           "(stability maps)");
+           "a file needs [scene] (a scene), [test] (a point test), [fit] (a fit), [stability] "
+           "(stability maps) or [case] (a validation case)");
   }
   return found->kind;
 }

@@ -5,9 +5,10 @@
 namespace repose::input {
 
 /// What an input file describes; its tables tell.
-enum class FileKind { scene, point_test, fit, stability };
+enum class FileKind { scene, point_test, fit, stability, benchmark };
 
-/// [scene], [test], [fit] or [stability]. Throws BadInput if none of them, or several, are there.
+/// [scene], [test], [fit], [stability] or [case]. Throws BadInput if none of them, or several, are
+/// there.
 FileKind kind_of(const InputFile& file);
 
 /// Throws BadInput unless the file is of the kind that `verb` takes, naming the verb that takes it.

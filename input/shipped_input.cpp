@@ -1,10 +1,12 @@
 #include "input/shipped_input.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "embedded_inputs.hpp"
+#include "io/atomic_file.hpp"
 
 namespace repose::input {
 namespace {
@@ -33,6 +35,18 @@ InputFile open(std::string_view what, std::span<const EmbeddedInput> shipped,
   return InputFile::read(name_or_file, overrides);
 }
 
+/// Writes the files of a case into a folder. Errors: IoError.
+void unpack_benchmark(std::string_view name, const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw io::IoError(folder, "cannot create", error.value());
+  for (const EmbeddedInput& input : embedded_benchmarks) {
+    const std::size_t slash = input.name.find('/');
+    if (input.name.substr(0, slash) == name)
+      io::write_atomically(folder / input.name.substr(slash + 1), input.text, io::Outlives::kill);
+  }
+}
+
 }  // namespace
 
 std::vector<std::string_view> shipped_scenes() { return names_of(embedded_scenes); }
@@ -53,5 +67,33 @@ InputFile open_input(const std::string& name_or_file, std::span<const std::strin
 }
 
 std::string_view shipped_chart_set() { return embedded_chart_set; }
+
+std::vector<std::string_view> shipped_benchmarks() {
+  std::vector<std::string_view> names;
+  for (const EmbeddedInput& input : embedded_benchmarks) {
+    const std::string_view name = input.name.substr(0, input.name.find('/'));
+    if (names.empty() || names.back() != name) names.push_back(name);
+  }
+  return names;
+}
+
+std::filesystem::path find_benchmark(const std::string& name_or_path,
+                                     const std::filesystem::path& output) {
+  namespace fs = std::filesystem;
+  const std::vector<std::string_view> shipped = shipped_benchmarks();
+  if (std::find(shipped.begin(), shipped.end(), name_or_path) != shipped.end()) {
+    unpack_benchmark(name_or_path, output / name_or_path);
+    return output / name_or_path / "case.toml";
+  }
+  if (name_or_path.find_first_of("./") == std::string::npos && !fs::exists(name_or_path)) {
+    const std::string near = closest(name_or_path, shipped);
+    throw BadInput(
+        {fmt::format("there is no case '{}': {}a folder with a case.toml is needed{}", name_or_path,
+                     shipped.empty() ? "" : fmt::format("one of {}, or ", fmt::join(shipped, ", ")),
+                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near))});
+  }
+  return fs::is_directory(name_or_path) ? fs::path(name_or_path) / "case.toml"
+                                        : fs::path(name_or_path);
+}
 
 }  // namespace repose::input

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Inputs that the program holds: the scenes of data/scenes, the point tests of data/experiments,
-/// and the set of charts of `repose chart all`.
+/// the cases of data/benchmarks, and the set of charts of `repose chart all`.
 
 #include "input/input_file.hpp"
 
@@ -21,5 +21,13 @@ InputFile open_input(const std::string& name_or_file, std::span<const std::strin
 
 /// data/charts/all.toml as it was built in.
 std::string_view shipped_chart_set();
+
+/// The cases of `repose validate`: the folders of data/benchmarks, in their order there.
+std::vector<std::string_view> shipped_benchmarks();
+/// The case.toml of one of them by its name, whose files are written into output/NAME first, or of
+/// a folder, or the file itself. Errors: IoError; for a name that is neither, BadInput with the
+/// nearest one.
+std::filesystem::path find_benchmark(const std::string& name_or_path,
+                                     const std::filesystem::path& output);
 
 }  // namespace repose::input

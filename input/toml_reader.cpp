@@ -281,7 +281,9 @@ std::vector<TomlReader> TomlReader::tables(std::string_view key, std::string_vie
 std::vector<std::string> TomlReader::keys() const {
   std::vector<std::string> names;
   if (table_ == nullptr) return names;
-  for (const auto& [key, node] : *table_) names.emplace_back(key.str());
+  for (const auto& [key, node] : *table_)
+    if (std::find(left_out_.begin(), left_out_.end(), key.str()) == left_out_.end())
+      names.emplace_back(key.str());
   return names;
 }
 

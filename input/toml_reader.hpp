@@ -75,7 +75,10 @@ class TomlReader {
   void expect(std::string_view key) { file_->expect(path_, key); }
   /// Any key may be here; the caller checks them.
   void expect_any() { file_->expect_any(path_); }
+  /// But for those that are left out.
   std::vector<std::string> keys() const;
+  /// Keys of this table that are read elsewhere, for readers that go through all keys.
+  void leave_out(std::span<const std::string_view> keys) { left_out_ = keys; }
 
  private:
   TomlReader(InputFile& file, const toml::table* table, std::string path, bool broken = false)
@@ -94,6 +97,7 @@ class TomlReader {
   InputFile* file_;
   const toml::table* table_;  ///< null: absent
   std::string path_;
+  std::span<const std::string_view> left_out_{};
   bool broken_;  ///< not a table at all, which has been reported: nothing is missing from it
 };
 

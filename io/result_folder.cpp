@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 62> outputs{"manifest.json",
+constexpr std::array<std::string_view, 65> outputs{"manifest.json",
                                                    "summary.json",
                                                    "checkpoint_previous.h5",
                                                    "sweep.csv",
@@ -92,7 +92,10 @@ constexpr std::array<std::string_view, 62> outputs{"manifest.json",
                                                    "accuracy.svg",
                                                    "estimate.csv",
                                                    "advised.toml",
-                                                   "fit_diagnostics.svg"};
+                                                   "fit_diagnostics.svg",
+                                                   "validation.md",
+                                                   "result.csv",
+                                                   "result.svg"};
 
 /// NAME_00012.hdf or NAME.hdf.series, or a temporary of one of them.
 bool is_frame_file(std::string name) {

@@ -7,6 +7,7 @@
 #include "app/commands/chart.hpp"
 #include "app/commands/sweep.hpp"
 #include "input/file_kind.hpp"
+#include "input/read_benchmark.hpp"
 #include "input/read_chart_set.hpp"
 #include "input/read_fit.hpp"
 #include "input/read_point_test.hpp"
@@ -142,6 +143,25 @@ io::ExitCode check_stability(input::InputFile& input, const CommonOptions& optio
   return io::ExitCode::done;
 }
 
+io::ExitCode check_benchmark(input::InputFile& input, const CommonOptions& options) {
+  const input::Benchmark file = input::read_benchmark(input);
+  double seconds = 0.0;
+  std::vector<std::string> laws;
+  for (const input::BenchmarkLaw& law : file.laws) {
+    laws.emplace_back(input::benchmark_columns[law.column]);
+    for (const input::SceneFile& scene : law.scenes)
+      seconds += mpm::count_estimate(scene.scene).seconds;
+  }
+  if (options.quiet) return io::ExitCode::done;
+  fmt::print("{}: a sound validation case, \"{}\"\n  laws     {}\n  figures  {}\n", input.name(),
+             file.title, fmt::join(laws, ", "), file.figures.size());
+  if (file.is_scene())
+    fmt::print("  runs     {}, about {}\n", file.laws.size() * file.cells.size(),
+               io::duration_text(io::two_digits(seconds)));
+  print_tables(input.tables());
+  return io::ExitCode::done;
+}
+
 io::ExitCode check_charts(const std::string& path, const CommonOptions& options) {
   const std::vector<std::string> lines = check_chart_set(options, path);
   if (!options.quiet)
@@ -172,6 +192,8 @@ io::ExitCode check_file(const std::string& path, const CommonOptions& options, L
       return check_fit(path, options);
     case input::FileKind::stability:
       return check_stability(input, options);
+    case input::FileKind::benchmark:
+      return check_benchmark(input, options);
   }
   return io::ExitCode::bad_input;
 }

@@ -94,5 +94,6 @@ Command add_fit(CLI::App& root);
 Command add_chart(CLI::App& root);
 Command add_stability(CLI::App& root);
 Command add_report(CLI::App& root);
+Command add_validate(CLI::App& root);
 
 }  // namespace repose::app

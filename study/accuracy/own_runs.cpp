@@ -12,9 +12,10 @@ using Eigen::VectorXd;
 /// Indices of a coarse, a middle and a fine size.
 using Three = std::array<std::size_t, 3>;
 
-/// Those of own_estimate() whose finest is levels[finest].
-std::optional<Three> three_of(std::span<const Resolution> levels, std::size_t finest) {
-  constexpr double coarser_by = 1.9;
+/// Those of own_estimate() whose finest is levels[finest], each the finest that is so many times as
+/// coarse as the next.
+std::optional<Three> three_of(std::span<const Resolution> levels, std::size_t finest,
+                              double coarser_by = 1.9) {
   Three three{finest, finest, finest};
   for (std::size_t slot = 2; slot-- > 0;) {
     const double wanted = coarser_by * levels[three[slot + 1]].h;
@@ -69,10 +70,10 @@ double unsteadiness(std::span<const Resolution> levels, const Three& three, cons
   return (before == 2 ? 0.5 : 1.0) * apart;
 }
 
-/// own_estimate() of these three sizes, without regard to the bar of those before.
-OwnEstimate estimate_of(std::span<const Resolution> levels, const Three& three, double scatter) {
+/// The first two parts of own_estimate()'s bar: what is extrapolated, and by which order.
+double bar_of_extrapolation(std::span<const Resolution> levels, const Three& three,
+                            const Extrapolated& e) {
   const Resolution &coarse = levels[three[0]], &middle = levels[three[1]], &fine = levels[three[2]];
-  const Extrapolated e = extrapolated(levels, three);
   const double size = e.value.lpNorm<1>();
   // sizes that agree by chance tell no more than the largest order does of the change before
   const double before = (middle.mean() - coarse.mean()).lpNorm<1>() / size;
@@ -84,7 +85,13 @@ OwnEstimate estimate_of(std::span<const Resolution> levels, const Three& three, 
   const double seen = e.shrinks() ? std::clamp(e.observed, 0.5, 2.0) : 1.0;
   const double of_order =
       change * std::max(std::abs(weight(seen) - e.weight), std::abs(weight(1.0) - e.weight));
+  return std::hypot(to_come, of_order);
+}
 
+/// own_estimate() of these three sizes, without regard to the bar of those before.
+OwnEstimate estimate_of(std::span<const Resolution> levels, const Three& three, double scatter) {
+  const Resolution &middle = levels[three[1]], &fine = levels[three[2]];
+  const Extrapolated e = extrapolated(levels, three);
   const auto of_mean = [&](const Resolution& level) {
     const double shown = level.scatter();
     return std::max(scatter, std::isfinite(shown) ? shown : 0.0) /
@@ -92,8 +99,8 @@ OwnEstimate estimate_of(std::span<const Resolution> levels, const Three& three, 
   };
   const double scattered =
       2.0 * std::hypot((1.0 + e.weight) * of_mean(fine), e.weight * of_mean(middle));
-  const double error =
-      std::hypot(std::hypot(to_come, of_order), unsteadiness(levels, three, e.value), scattered);
+  const double error = std::hypot(bar_of_extrapolation(levels, three, e),
+                                  unsteadiness(levels, three, e.value), scattered);
   return {e.value, 3, error, scattered, e.order, e.observed};
 }
 
@@ -115,6 +122,15 @@ std::optional<OwnEstimate> own_estimate(std::span<const Resolution> levels, doub
       before ? estimate_of(levels, *before, scatter).error : 4.0 * estimate.error;
   estimate.error = std::max(estimate.error, 0.5 * bar_before);
   return estimate;
+}
+
+std::optional<OwnEstimate> close_estimate(std::span<const Resolution> levels) {
+  if (levels.empty()) return {};
+  constexpr double coarser_by = 1.3;
+  const auto three = three_of(levels, levels.size() - 1, coarser_by);
+  if (!three) return {};
+  const Extrapolated e = extrapolated(levels, *three);
+  return OwnEstimate{e.value, 3, bar_of_extrapolation(levels, *three, e), 0.0, e.order, e.observed};
 }
 
 }  // namespace repose::study

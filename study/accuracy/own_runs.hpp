@@ -42,4 +42,10 @@ inline constexpr double least_own_order = 1.0, largest_own_order = 2.0;
 /// order 1. Absent for one.
 std::optional<OwnEstimate> own_estimate(std::span<const Resolution> levels, double scatter);
 
+/// From three sizes that lie closer, each 1.3 times as coarse as the next or more, which is the
+/// least that shows an order (Celik et al. 2008, J. Fluids Eng. 130, 078001): own_estimate()
+/// without what only sizes further apart can tell, its steadiness. Absent where there are no such
+/// three.
+std::optional<OwnEstimate> close_estimate(std::span<const Resolution> levels);
+
 }  // namespace repose::study
