@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "input/key_info.hpp"
 #include "input/measured_columns.hpp"
 #include "input/read_chart.hpp"
 #include "input/read_keys.hpp"
@@ -74,6 +75,26 @@ void benchmark_law_keys(Keys& keys, BenchmarkLaw& law) {
   law_keys(keys, law.law);
 }
 
+/// A number, or "start".
+void over_key(Keys& keys, const Key& key, BenchmarkFigure& figure) {
+  KeyInfo any, number, start;
+  any.kind = ValueKind::any_of;
+  start.kind = ValueKind::word;
+  start.words = {"start"};
+  any.below = {number, start};
+  keys.value(
+      key,
+      [&](TomlReader& table) {
+        if (const toml::node* given = table.get("over"); given != nullptr && given->is_string()) {
+          table.choice("over", {"start"}, 0);
+          figure.over_start = true;
+        } else {
+          figure.over = table.number({"over", "-", key.doc, {}, 1.0});
+        }
+      },
+      [&] { return figure.over_start ? "\"start\"" : fmt::format("{}", figure.over); }, any);
+}
+
 void number_keys(Keys& keys, BenchmarkFigure& figure) {
   constexpr std::string_view only = "only a figure with value, a number, has this key";
   const bool is = !figure.value.empty();
@@ -83,11 +104,15 @@ void number_keys(Keys& keys, BenchmarkFigure& figure) {
       Key{"depth_m", "m", "of front_at_m, the least that counts", positive, required}.only_if(
           figure.value == front_at, "only value = \"front_at_m\" has a depth_m"),
       figure.depth);
-  keys.number(Key{"minus", "SI", "subtracted from the value"}.only_if(is, only), figure.minus);
-  keys.number(Key{"over", "SI", "divides what is left"}.only_if(is, only), figure.over);
-  keys.number(
-      Key{"measured", "the figure's unit", "what was measured", {}, required}.only_if(is, only),
-      figure.measured);
+  keys.number(Key{"minus", "-", "subtracted from the value, SI"}.only_if(is, only), figure.minus);
+  over_key(
+      keys,
+      Key{"over", "-", "divides what is left, SI; or \"start\": the first value of the same column"}
+          .only_if(is, only),
+      figure);
+  keys.number(Key{"measured", "-", "what was measured, in the figure's unit", {}, required}.only_if(
+                  is, only),
+              figure.measured);
   if (keys.reader() != nullptr && is && figure.over == 0.0)
     keys.reader()->report("over", "over divides: it must not be 0");
 }
@@ -107,9 +132,9 @@ void curve_keys(Keys& keys, BenchmarkFigure& figure) {
   keys.text(Key{"table", "-", "a CSV file beside this one", {}, required}.only_if(is, only),
             figure.table);
   keys.number(Key{"x_scale", "-", "factor of the table's x"}.only_if(is, only), figure.x_scale);
-  keys.number(Key{"x_shift", "SI", "added to it"}.only_if(is, only), figure.x_shift);
+  keys.number(Key{"x_shift", "-", "added to it, SI"}.only_if(is, only), figure.x_shift);
   keys.number(Key{"y_scale", "-", "factor of the table's y"}.only_if(is, only), figure.y_scale);
-  keys.number(Key{"y_shift", "SI", "added to it"}.only_if(is, only), figure.y_shift);
+  keys.number(Key{"y_shift", "-", "added to it, SI"}.only_if(is, only), figure.y_shift);
   keys.choice(Key{"measure", "-", "of the distance", {}, required}.only_if(is, only),
               benchmark_measure_names, figure.measure);
   describe_table_keys(keys);
@@ -130,7 +155,11 @@ void figure_keys(Keys& keys, BenchmarkFigure& figure) {
                figure.stage);
   number_keys(keys, figure);
   curve_keys(keys, figure);
-  keys.pair({"band", "the figure's unit", "[lower, upper] of what counts as right", {}, required},
+  keys.pair({"band",
+             "-",
+             "lower and upper end of what counts as right, in the figure's unit",
+             {},
+             required},
             figure.band);
   keys.text({"band_from", "-", "where the band is from", {}, required}, figure.band_from);
 }
@@ -218,19 +247,25 @@ void check_figure(TomlReader& reader, BenchmarkFigure& figure, const Benchmark& 
   read_figure_table(reader, figure);
 }
 
-void read_absent(InputFile& file, Benchmark& benchmark) {
-  TomlReader root(file);
-  TomlReader absent = root.table("absent");
-  const bool laws_are_known = file.ok();
+void absent_keys(Keys& keys, std::map<std::string, std::string>& absent) {
   for (const std::string_view column : benchmark_columns) {
-    const std::string reason = absent.text(column, "why there is no such law in this case", "");
-    const bool present = std::any_of(
-        benchmark.laws.begin(), benchmark.laws.end(),
-        [&](const BenchmarkLaw& law) { return benchmark_columns[law.column] == column; });
-    if (!reason.empty()) benchmark.absent[std::string(column)] = reason;
-    if (present && !reason.empty() && laws_are_known)
-      absent.report(column, fmt::format("{} is a [[law]] and absent as well", column));
-    if (!present && reason.empty() && laws_are_known)
+    std::string reason;
+    if (const auto known = absent.find(std::string(column)); known != absent.end())
+      reason = known->second;
+    keys.text({column, "-", "why the case has no law of this column"}, reason);
+    if (!reason.empty()) absent[std::string(column)] = reason;
+  }
+}
+
+/// Every column has a law or a reason, and not both.
+void check_columns(InputFile& file, const Benchmark& benchmark) {
+  if (!file.ok()) return;  // which columns there are is not known then
+  for (std::size_t k = 0; k < benchmark_columns.size(); ++k) {
+    const std::string column(benchmark_columns[k]);
+    const bool absent = benchmark.absent.contains(column), present = benchmark.law_of(k) != nullptr;
+    if (present && absent)
+      file.report("absent." + column, column + " is a [[law]] and absent as well");
+    if (!present && !absent)
       file.report("absent", fmt::format("column {} is neither a [[law]] nor in [absent], which "
                                         "says why there is none",
                                         column));
@@ -368,6 +403,8 @@ void benchmark_keys(Keys& keys, Benchmark& benchmark) {
       {"law", "-", "a law, and the column it stands in", {}, required}, benchmark.laws.size(),
       [&](std::size_t count) { benchmark.laws.resize(count); },
       [&](Keys& below, std::size_t i) { benchmark_law_keys(below, benchmark.laws[i]); });
+  keys.table({"absent", "-", "columns without a law"},
+             [&](Keys& below) { absent_keys(below, benchmark.absent); });
   keys.tables(
       {"figure", "-", "a figure that was measured", {}, required}, benchmark.figures.size(),
       [&](std::size_t count) { benchmark.figures.resize(count); },
@@ -386,7 +423,7 @@ Benchmark read_benchmark(InputFile& file, std::span<const std::string> overrides
   benchmark.name = fs::absolute(file.name()).lexically_normal().parent_path().filename().string();
   ReadKeys keys{TomlReader(file)};
   benchmark_keys(keys, benchmark);
-  read_absent(file, benchmark);
+  check_columns(file, benchmark);
   refuse_twins(file, benchmark);
   if (file.ok()) Inputs(file, benchmark, overrides).read();
   file.throw_if_bad();

@@ -11,8 +11,8 @@
 
 namespace repose::input {
 
-/// The columns of the page that `repose validate` writes: a law each, or a law with what its
-/// authors left out ("mn": the Matsuoka-Nakai shape of its yield surface).
+/// The columns of the page that `repose validate` writes: a law each; "mn" has the yield surface of
+/// Matsuoka & Nakai in place of a cone.
 constexpr std::array<std::string_view, 8> benchmark_columns{
     "mu_i", "mu_i_mn", "mcc", "mcc_mn", "cs", "cs_mn", "newtonian", "neo_hookean"};
 
@@ -59,6 +59,7 @@ struct BenchmarkFigure {
   double depth = 0.0;  ///< of front_at [m]
   BenchmarkTake take = BenchmarkTake::last;
   double minus = 0.0, over = 1.0;  ///< the figure is (value − minus)/over
+  bool over_start = false;         ///< over being the first value of the same column
   double measured = std::numeric_limits<double>::quiet_NaN();
   std::optional<BenchmarkCurve> curve;  ///< or the kind of curve
   std::string x, y;                     ///< its columns
@@ -103,7 +104,7 @@ struct Benchmark {
   std::size_t test_of(const BenchmarkFigure& figure) const;
 };
 
-/// The keys of a case.toml, but for [absent].
+/// The keys of a case.toml.
 void benchmark_keys(Keys& keys, Benchmark& benchmark);
 
 /// Reads a case with everything that it names: each scene with each law and cell size, each test

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "input/read_benchmark.hpp"
 #include "input/read_chart.hpp"
 #include "input/read_chart_set.hpp"
 #include "input/read_fit.hpp"
@@ -57,6 +58,11 @@ std::vector<KeyInfo> chart_infos() {
   return list;
 }
 
+std::vector<KeyInfo> case_infos() {
+  Benchmark benchmark;
+  return describe_keys([&](Keys& keys) { benchmark_keys(keys, benchmark); });
+}
+
 std::string description(const KeyInfo& key) {
   std::string text = unit_and_doc(key.unit, key.doc);
   if (!key.only.empty()) text += "; " + key.only;
@@ -83,19 +89,33 @@ Json object(const std::vector<KeyInfo>& keys, bool open) {
   return json;
 }
 
-/// A table, or where its keys depend on what `name` says (a law), one of several, or a file that
-/// has one.
+/// The keys of a table that depend on what `name` says (a law's); null if there are none.
+const KeyInfo* forms_of(const KeyInfo& table) {
+  for (const KeyInfo& key : table.below)
+    if (key.name.empty()) return &key;
+  return nullptr;
+}
+
+/// A table, or where its keys depend on what `name` says, one of several, each with what stands
+/// beside these keys, or a file that has one.
 Json table_schema(const KeyInfo& table) {
-  if (table.below.size() != 1 || !table.below.front().name.empty())
-    return object(table.below, table.open);
+  const KeyInfo* const laws = forms_of(table);
+  if (laws == nullptr) return object(table.below, table.open);
   Json forms = Json::array();
-  for (const KeyInfo& form : table.below.front().below) {
-    Json json = object(form.below, false);
+  for (const KeyInfo& form : laws->below) {
+    std::vector<KeyInfo> keys = form.below;
+    std::vector<std::string> needed{"name"};
+    for (const KeyInfo& key : table.below) {
+      if (key.name.empty()) continue;
+      keys.push_back(key);
+      if (key.required) needed.push_back(key.name);
+    }
+    Json json = object(keys, false);
     json["properties"]["name"] = {{"const", form.name}, {"description", form.doc}};
-    json["required"] = {"name"};
+    json["required"] = needed;
     forms.push_back(json);
   }
-  forms.push_back({{"type", "string"}, {"pattern", "\\.toml$"}});
+  if (table.below.size() == 1) forms.push_back({{"type", "string"}, {"pattern", "\\.toml$"}});
   return {{"anyOf", forms}};
 }
 
@@ -235,12 +255,11 @@ void add_tables(std::string& page, const std::string& path, const std::vector<Ke
       page +=
           fmt::format("\n### `{}`\n", form.kind == ValueKind::tables ? fmt::format("[[{}]]", below)
                                                                      : fmt::format("[{}]", below));
-      if (form.below.size() == 1 && form.below.front().name.empty())
+      if (forms_of(form) != nullptr)
         page +=
             "\n`name` is one of the laws of `repose models`; `repose models LAW` lists the other "
             "keys, its parameters.\n";
-      else
-        add_tables(page, below, form.below);
+      add_tables(page, below, form.below);
     }
   }
 }
@@ -266,9 +285,11 @@ std::vector<KeyInfo> keys_of(SchemaKind kind) {
     case SchemaKind::fit:
       return fit_infos();
     case SchemaKind::chart:
+      return chart_infos();
+    case SchemaKind::benchmark:
       break;
   }
-  return chart_infos();
+  return case_infos();
 }
 
 std::string json_schema(SchemaKind kind) {
@@ -282,13 +303,13 @@ std::string key_page() {
   std::string page =
       "# Keys of the input files\n\n"
       "Made by `repose schema --page` from the tables that the readers use; a test compares the "
-      "two.\nUnits are SI. `repose schema scene` (`test`, `fit`, `chart`) prints the same as a "
-      "JSON "
+      "two.\nUnits are SI. `repose schema scene` (`test`, `fit`, `chart`, `case`) prints the "
+      "same as a JSON "
       "Schema, which\neditors complete and check from: the shipped files name it in their first "
       "line (`#:schema …`).\n";
-  constexpr std::array<std::string_view, 4> titles{
+  constexpr std::array<std::string_view, 5> titles{
       "Scene: `repose run`", "Point test: `repose point`", "Fit: `repose fit`",
-      "Charts and maps: `repose chart`, `repose stability`"};
+      "Charts and maps: `repose chart`, `repose stability`", "Validation case: `repose validate`"};
   for (std::size_t k = 0; k < schema_names.size(); ++k) {
     page += fmt::format("\n## {}\n", titles[k]);
     add_tables(page, "", keys_of(static_cast<SchemaKind>(k)));

@@ -11,8 +11,8 @@
 
 namespace repose::input {
 
-enum class SchemaKind : std::uint8_t { scene, test, fit, chart };
-constexpr std::array<std::string_view, 4> schema_names{"scene", "test", "fit", "chart"};
+enum class SchemaKind : std::uint8_t { scene, test, fit, chart, benchmark };
+constexpr std::array<std::string_view, 5> schema_names{"scene", "test", "fit", "chart", "case"};
 
 /// The kind of that name. Errors: BadInput, with the names there are.
 SchemaKind schema_kind(std::string_view name);

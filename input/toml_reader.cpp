@@ -234,8 +234,9 @@ std::array<double, 3> TomlReader::vector(const NumberKey& key, std::size_t axes,
   if (!has(key.key)) {
     expect(key.key);
     if (!fallback)
-      missing(key.key, fmt::format("{} in {}{}", axes == 2 ? "[x, y]" : "[x, y, z]", key.unit,
-                                   doc_of(key.doc)));
+      missing(key.key,
+              fmt::format("{}{}{}", axes == 2 ? "[x, y]" : "[x, y, z]",
+                          key.unit == "-" ? "" : fmt::format(" in {}", key.unit), doc_of(key.doc)));
     return fallback.value_or(read);
   }
   if (const auto values = numbers(key, axes))

@@ -16,7 +16,7 @@ Command add_schema(CLI::App& root) {
   const auto options = std::make_shared<CommonOptions>();
   const auto kind = std::make_shared<std::string>();
   const auto page = std::make_shared<bool>(false);
-  verb.option("KIND", *kind, "scene, test, fit or chart", "");
+  verb.option("KIND", *kind, "scene, test, fit, chart or case", "");
   verb.flag("--page", *page, "Print the reference page of all kinds instead");
   return {verb.app(), options, [kind, page] {
             const std::string text =

@@ -59,6 +59,16 @@ double number_of(const BenchmarkFigure& figure, const SweepRun& run) {
   refuse_name(figure.value, names);
 }
 
+/// What a number is divided by. column: its own; empty where it is none.
+double divisor(const BenchmarkFigure& figure, const std::vector<double>& column) {
+  if (!figure.over_start) return figure.over;
+  if (column.empty())
+    throw NoFigure(
+        fmt::format("over = \"start\": '{}' is no column, which has a start", figure.value));
+  if (column.front() == 0.0) throw NoFigure(fmt::format("{} starts from 0", figure.value));
+  return column.front();
+}
+
 std::vector<double> series_column(const SweepRun& run, const std::string& name) {
   if (const std::vector<double>& column = run.column(name); !column.empty()) return column;
   std::vector<std::string> names;
@@ -117,7 +127,8 @@ std::optional<std::vector<double>> test_column(const std::string& name,
 
 double scene_value(const BenchmarkFigure& figure, const SweepRun& run,
                    const std::filesystem::path& folder, PlainCurve& curve) {
-  if (!figure.is_curve()) return (number_of(figure, run) - figure.minus) / figure.over;
+  if (!figure.is_curve())
+    return (number_of(figure, run) - figure.minus) / divisor(figure, run.column(figure.value));
   curve = scene_curve(figure, run, folder);
   return distance(curve, figure);
 }
@@ -130,12 +141,14 @@ double test_value(const BenchmarkFigure& figure, const input::PointTestFile& tes
              *test_column(figure.y, figure, test, result)};
     return distance(curve, figure);
   }
-  const auto shown = [&](double x) { return (x - figure.minus) / figure.over; };
+  const auto shown = [&](double x, const std::vector<double>& column) {
+    return (x - figure.minus) / divisor(figure, column);
+  };
   if (const auto values = test_column(figure.value, figure, test, result))
-    return shown(taken(*values, figure.take));
+    return shown(taken(*values, figure.take), *values);
   const io::Json laboratory = laboratory_json(result.figures);
   const io::Json* const found = laboratory.find(figure.value);
-  if (found != nullptr && found->is_number()) return shown(found->get<double>());
+  if (found != nullptr && found->is_number()) return shown(found->get<double>(), {});
   std::vector<std::string> names;
   for (std::size_t k = 0; k < point::quantity_count; ++k)
     names.emplace_back(point::column_name(static_cast<point::Quantity>(k)));

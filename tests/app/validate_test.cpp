@@ -323,7 +323,7 @@ const std::vector<Mistake> mistakes{
     {"UnknownKey", "point", "minus = 1.0", "minsu = 1.0",
      "wrong.toml:29:1: unknown key 'minsu' in figure[0]; did you mean 'minus'?"},
     {"NoBand", "point", "band = [2.4, 2.6]\n", "",
-     "wrong.toml:24:1: figure[0] needs band, [x, y] in the figure's unit"},
+     "wrong.toml:24:1: figure[0] needs band, [x, y] (lower and upper end"},
     {"BandUpsideDown", "point", "[2.4, 2.6]", "[2.6, 2.4]", "the lower end comes first"},
     {"NoMeasured", "point", "measured = 2.5\n", "", "needs measured"},
     {"LawKey", "point", "eta = 2.0", "etha = 2.0", "wrong.toml:10:1: newtonian has no parameter"},
@@ -363,6 +363,8 @@ const std::vector<Mistake> mistakes{
      "parameters = ", "set = [\"scene.endtime=1\"]\nparameters = ", "did you mean 'end_time'?"},
     {"Measure", "point", "measure = \"rms\"", "measure = \"rsm\"",
      "wrong.toml:43:1: figure[1].measure must be one of \"rms\", \"max\""},
+    {"OverAnotherWord", "point", "over = 2.0", "over = \"begin\"", "must be \"start\""},
+    {"OverNothing", "point", "over = 2.0", "over = 0.0", "it must not be 0"},
     {"DepthOfNoFront", "point", "minus = 1.0", "depth_m = 1.0",
      "only value = \"front_at_m\" has a depth_m"},
 };

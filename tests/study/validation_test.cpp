@@ -171,6 +171,13 @@ TEST(SceneValue, IsOfTheSeriesOrTheSummary) {
   EXPECT_EQ(value("front_m"), 5.0);
   figure.take = input::BenchmarkTake::least;
   EXPECT_EQ(value("front_m"), 1.0);
+  figure.take = input::BenchmarkTake::last;
+  figure.over_start = true;
+  run.series["front_m"].front() = 0.5;
+  EXPECT_EQ(value("front_m"), 6.0);
+  EXPECT_NE(refusal([&] { value("time_s"); }), "");  // from 0
+  EXPECT_NE(refusal([&] { value("steps"); }), "");   // no column
+  figure.over_start = false;
   EXPECT_EQ(refusal([&] { value("frnt_m"); }),
             "there is no 'frnt_m' in the result; did you mean 'front_m'?");
 }
