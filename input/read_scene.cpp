@@ -208,6 +208,11 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
   disc_keys(keys, body, shape != 0, space);
   place_key(keys, {"velocity", "m/s", "at the start"}, axes, body.velocity);
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
+  keys.number(
+      {"restitution", "-",
+       "of the grains' contacts, which then damp elastic waves; a law with a grain diameter",
+       Range{0.0, 1.0, true, false}},
+      body.restitution);
   keys.table({"initial", "-", "the state at the start"},
              [&](Keys& below) { body_initial_keys(below, body); });
   keys.table(

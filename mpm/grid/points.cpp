@@ -71,6 +71,8 @@ PointsOf<dim>& PointsOf<dim>::unpacked(const SlotRange& range) const {
   copy.fields = fields;
   copy.affine = affine;
   copy.force_stress = force_stress;
+  copy.damping_length = damping_length;
+  copy.damped_signal = damped_signal;
   const std::size_t n = std::min(padded(range.count), slots() - range.begin);
   if (copy.id.size() < padded(n)) {
     copy.id.resize(padded(n));

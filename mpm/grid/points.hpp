@@ -34,7 +34,7 @@ enum Field : std::size_t {
 };
 constexpr std::size_t max_state = 4;
 constexpr std::size_t affine_fields = 4;
-constexpr std::size_t split_fields = 2;
+constexpr std::size_t split_fields = 2;  ///< of a stress that is split (implicit_viscosity.hpp)
 
 /// The same order of fields in `dim` dimensions: where each group begins. L is row by row, stresses
 /// come as in Sym (xx, yy, zz, xy and, in space, yz, zx).
@@ -90,7 +90,9 @@ template <int dim>
 struct PointsOf {
   using At = Layout<dim>;
   using Batch = BatchOf<static_cast<int>(At::components)>;
-  static constexpr std::size_t most_fields = At::state + max_state + split_fields + At::gradient;
+  static constexpr std::size_t force_components = dim == 2 ? 3 : 6;
+  static constexpr std::size_t most_fields =
+      At::state + max_state + force_components + At::gradient;
 
   std::shared_ptr<const Material> material;
   double rho_0 = 0.0;     ///< reference density for solid depths [kg/m³]
@@ -101,9 +103,12 @@ struct PointsOf {
   /// behind the state where it is kept apart from the velocity gradient.
   std::size_t affine = At::L;
   /// The fields whose stress gives the explicit forces, xx, yy, xy in the plane and xx, yy, zz, xy,
-  /// yz, zx in space: the whole stress; or in the plane two fields behind the state, −p and 0,
-  /// where the viscous part acts implicitly (implicit_viscosity.hpp).
-  std::array<std::size_t, dim == 2 ? 3 : 6> force_stress = whole_stress();
+  /// yz, zx in space: the whole stress; or fields behind the state: in the plane two, −p and 0,
+  /// where the viscous part acts implicitly (implicit_viscosity.hpp), or one for each, with what
+  /// contacts add where they damp (contact_damping.hpp).
+  std::array<std::size_t, force_components> force_stress = whole_stress();
+  double damping_length = 0.0;  ///< ℓ of contact_damping.hpp [m]; 0: contacts do not damp
+  double damped_signal = 1.0;   ///< what they make of the fastest signal, over it
   std::array<AlignedVector<double>, most_fields> field;  ///< empty if `single`
   std::vector<std::int64_t> id;  ///< order of creation, the point's name for life; −1 in padding
 
@@ -117,9 +122,13 @@ struct PointsOf {
   double* data(std::size_t f) { return field[f].data(); }
   const double* data(std::size_t f) const { return field[f].data(); }
   std::size_t slots() const { return id.size(); }
-  bool splits_stress() const { return force_stress[0] != At::stress; }
+  bool damps() const { return damping_length > 0.0; }
+  bool splits_stress() const { return force_stress[0] != At::stress && !damps(); }
   std::size_t state_fields() const {
-    return (splits_stress() ? force_stress[0] : affine == At::L ? fields : affine) - At::state;
+    return (splits_stress() || damps() ? force_stress[0]
+            : affine == At::L          ? fields
+                                       : affine) -
+           At::state;
   }
   std::size_t bytes_per_slot() const {
     return fields * (single ? sizeof(float) : sizeof(double)) + (single ? dim : 0) * sizeof(float) +
@@ -166,7 +175,7 @@ struct PointsOf {
  private:
   PointsOf& unpacked(const SlotRange& range) const;  ///< one copy per thread
   void pack(const PointsOf& copy, const SlotRange& range);
-  static constexpr std::array<std::size_t, dim == 2 ? 3 : 6> whole_stress() {
+  static constexpr std::array<std::size_t, force_components> whole_stress() {
     constexpr std::size_t s = At::stress;
     if constexpr (dim == 2)
       return {s, s + 1, s + 3};

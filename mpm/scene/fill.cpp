@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "mpm/scene/restitution.hpp"
+
 namespace repose::mpm {
 namespace {
 
@@ -42,6 +44,10 @@ void append(PointsOf<dim>& points, const std::array<double, dim>& x, const Body&
     points.append(points.force_stress[0], mean(at.stress));
     points.append(points.force_stress[2], 0.0);
   }
+  if (points.damps())
+    for (std::size_t k = 0; k < points.force_stress.size(); ++k)
+      points.append(points.force_stress[k],
+                    at.stress.c[dim == 2 && k == 2 ? 3 : k]);  // xx, yy, xy of the plane
   if (points.affine != F::L)
     for (std::size_t k = 0; k < F::gradient; ++k)
       points.append(points.affine + k, points[F::L + k][points.id.size()]);
@@ -155,6 +161,11 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
       points.force_stress = {points.fields, points.fields, points.fields + 1};
       points.fields += split_fields;
     }
+  }
+  if (body.restitution && *body.restitution < 1.0) {
+    points.damping_length = damping_length(*body.restitution, points.material->parameter("d"));
+    points.damped_signal = damped_signal(points.damping_length, scene.h);
+    for (std::size_t& f : points.force_stress) f = points.fields++;
   }
   if (scene.transfer == Transfer::relaxed) {
     points.affine = points.fields;

@@ -47,6 +47,9 @@ struct Body {
   InitialConditions initial;
   /// p grows with depth below the body's top; of `initial` only K0 (default 1) and ocr apply.
   bool lithostatic = false;
+  /// Of the grains' contacts, which then damp elastic waves (step/contact_damping.hpp); 1: they do
+  /// not
+  std::optional<double> restitution;
 };
 
 enum class Kernel { quadratic, cubic };

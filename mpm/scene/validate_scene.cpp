@@ -389,6 +389,13 @@ void check_law(const Scene& scene, std::size_t i) {
   } catch (const InputError& error) {
     throw InputError(path_of(i, "law.") + error.key(), error.what());
   }
+  const auto parameters = material->law().parameters;
+  if (body.restitution && (!material->law().has_stress_memory ||
+                           std::none_of(parameters.begin(), parameters.end(),
+                                        [](const ParamInfo& p) { return p.name == "d"; })))
+    throw InputError(path_of(i, "restitution"),
+                     "contacts damp the elastic waves of a law that has them and a grain diameter "
+                     "d: mu_i (form = \"elastoviscoplastic\") or critical_state_mu_i");
   try {
     const InitialPoint start = body.lithostatic ? lithostatic_base(scene, body, *material)
                                                 : material->initial(body.initial);
@@ -396,8 +403,7 @@ void check_law(const Scene& scene, std::size_t i) {
       throw InputError("density",
                        "the initial density comes out as " + number(start.density) + " kg/m³");
   } catch (const InputError& error) {
-    const auto table = material->law().parameters;
-    const bool of_law = std::any_of(table.begin(), table.end(),
+    const bool of_law = std::any_of(parameters.begin(), parameters.end(),
                                     [&](const ParamInfo& p) { return p.name == error.key(); });
     throw InputError(path_of(i, of_law ? "law." : "initial.") + error.key(), error.what());
   }

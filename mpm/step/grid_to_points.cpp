@@ -5,6 +5,7 @@
 #include "mpm/grid/block_loops.hpp"
 #include "mpm/grid/tile_exchange.hpp"
 #include "mpm/step/choose_kernel.hpp"
+#include "mpm/step/contact_damping.hpp"
 #include "mpm/step/pressure_averaging.hpp"
 #include "mpm/step/simulation_impl.hpp"
 #include "mpm/step/step_kinematics.hpp"
@@ -195,6 +196,12 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
       add_averaging_strain(*points.material, batch, scene.pressure_averaging, motion.elastic,
                            pressure_before, e);
   }
+  std::array<double*, F::components> stress_before;
+  if (points.damps())
+    for (std::size_t i = 0; i < F::components; ++i) {
+      stress_before[i] = array();
+      std::copy_n(batch.stress[i], reached, stress_before[i]);
+    }
   const UpdateReport report = points.material->update(batch);
   if (!report.ok() && sums.failure.empty()) {
     const std::size_t k = report.failed;
@@ -206,6 +213,10 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
   if constexpr (dim == 2) {
     if (points.splits_stress()) split_stress(points, range, batch);
     if (averages()) take_back_averaging_work(batch, motion.elastic, pressure_before);
+  }
+  if (points.damps()) {
+    batch.viscous = array();
+    damp_contacts(points, range, batch, stress_before, batch.viscous);
   }
   hold_density(points, range, batch, motion.elastic, pressure_before, sums);
   sum_up(points, range, batch, motion, sums);
@@ -264,7 +275,8 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
   const Pack viscous_factor(2.0 * dim / (grid.h() * grid.h()));
   Pack kinetic(0.0), work(0.0), power(0.0);
   const double* const of_law = follows_rate ? batch.viscous : batch.plastic;
-  Pack dissipated(0.0), hypoelastic(0.0), separation(0.0), averaging(0.0);
+  Pack dissipated(0.0), hypoelastic(0.0), separation(0.0), averaging(0.0), damping(0.0);
+  const Pack damped_signal(points.damped_signal);
   Pack speed2(0.0), signal(0.0), viscous_rate(0.0);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const auto at = [&](std::size_t f) {
@@ -287,6 +299,7 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
     if (!follows_rate)
       hypoelastic = hypoelastic + volume * Pack::load_aligned(batch.hypoelastic + k);
     separation = separation + volume * Pack::load_aligned(batch.separation + k);
+    if (points.damps()) damping = damping + volume * Pack::load_aligned(batch.viscous + k);
     if (averages()) averaging = averaging + volume * Pack::load_aligned(motion.elastic + k);
     std::array<Pack, F::gradient> L;
     for (std::size_t i = 0; i < L.size(); ++i) L[i] = at(F::L + i);
@@ -297,7 +310,7 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
     const Pack v2 = dot(moving, moving);
     speed2 = max_of(speed2, v2);
     const Pack c2 = Pack::load_aligned(batch.modulus + k) * inv_rho;
-    signal = max_of(signal, Pack(sqrt(v2) + sqrt(c2)));
+    signal = max_of(signal, Pack(sqrt(v2) + damped_signal * sqrt(c2)));
     if (batch.viscosity != nullptr)
       viscous_rate = max_of(
           viscous_rate, Pack(viscous_factor * Pack::load_aligned(batch.viscosity + k) * inv_rho));
@@ -305,6 +318,7 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
   sums.kinetic += xsimd::hadd(kinetic);
   sums.work += xsimd::hadd(work);
   (follows_rate ? sums.viscous : sums.plastic) += xsimd::hadd(dissipated);
+  sums.viscous += xsimd::hadd(damping);
   sums.hypoelastic += xsimd::hadd(hypoelastic);
   sums.separation += xsimd::hadd(separation);
   sums.averaging += xsimd::hadd(averaging);

@@ -42,7 +42,7 @@ void Simulation::Impl<dim>::square_signals(PointsOf<dim>& points, const SlotRang
     const auto at = [&](std::size_t f) {
       return Pack::load_aligned(points.data(f) + range.begin + k);
     };
-    const Pack c = sqrt(Pack::load_aligned(signal2 + k) / at(F::rho));
+    const Pack c = Pack(points.damped_signal) * sqrt(Pack::load_aligned(signal2 + k) / at(F::rho));
     std::array<Pack, dim> v;
     for (std::size_t i = 0; i < dim; ++i) v[i] = at(F::v + i);
     const Pack signal = c + sqrt(dot(v, v));

@@ -126,7 +126,7 @@ Signals Simulation::Impl<dim>::initial_signals() const {
         if (points.id[s] < 0) continue;
         const double speed = std::sqrt(squared_speed(points, s));
         const double rho = points[F::rho][s];
-        found.include({speed, speed + std::sqrt(modulus[k] / rho),
+        found.include({speed, speed + points.damped_signal * std::sqrt(modulus[k] / rho),
                        2.0 * dim * viscosity[k] / (rho * grid.h() * grid.h())});
       }
     });

@@ -118,9 +118,10 @@ class Simulation::Impl {
   void move(PointsOf<dim>& points, const SlotRange& range, const MotionOf<dim>& motion, double dt,
             BlockSums& sums) const;
   /// Arrays of a range's length: velocity and mean elastic strain (Motion), and in strain() a
-  /// strain, a spin, work and what it is spent on (3), modulus, viscosity and pressure.
+  /// strain, a spin, work and what it is spent on (3), modulus, viscosity and pressure, and where
+  /// contacts damp a stress and work.
   static constexpr std::size_t scratch_arrays =
-      dim + 1 + Layout<dim>::components + (dim == 2 ? 1 : 3) + 7;
+      dim + 1 + 2 * Layout<dim>::components + (dim == 2 ? 1 : 3) + 8;
   /// Brings a range's stress to the end of the step.
   void strain(PointsOf<dim>& points, std::size_t body, const SlotRange& range,
               const MotionOf<dim>& motion, double dt, double* scratch, BlockSums& sums) const;

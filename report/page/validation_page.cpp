@@ -131,7 +131,9 @@ std::string validation_page(std::span<const CaseResult> cases, const std::string
       "# Laws against experiments and exact solutions\n\n"
       "Made by `repose validate`. A figure is inside if its value with its error bar lies in the "
       "band, outside\nif it lies beside it, undecided if the bar reaches across an end of the "
-      "band, and failed if there is none.\n";
+      "band, and failed if there is none.\n"
+      "Laws: `mcc` modified Cam-Clay, `cs` critical-state μ(I); `_mn` with the cone of Matsuoka & "
+      "Nakai in place of the circle.\n";
   if (!note.empty()) text += "\n" + note + "\n";
   text += "\n" + validation_table(cases);
   for (const CaseResult& result : cases) {

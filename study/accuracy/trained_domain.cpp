@@ -144,6 +144,7 @@ std::vector<std::string> beyond_training(const mpm::Scene& scene) {
   if (body.initial.ocr.value_or(1.0) > 1.01) reasons.emplace_back("an overconsolidated start");
   if (scene.relaxation_time) reasons.emplace_back("a relaxation time of its own");
   if (body.lithostatic) reasons.emplace_back("a lithostatic start");
+  if (body.restitution) reasons.emplace_back("contacts that damp");
   using Kind = mpm::Wall::Kind;
   if (scene.floor.kind != Kind::no_slip && scene.floor.kind != Kind::friction)
     reasons.emplace_back("a floor that is neither no-slip nor with friction");

@@ -88,7 +88,7 @@ std::vector<std::string> scenes() {
             grid + "[step]\ntransfer = \"xpic\"\norder = 3\ndt = 1e-5\n"),
       plane(box + "[body.initial]\nsigma_v = 20e3\nK0 = 0.8\nocr_v = 1.5\nK0_nc = 0.6\n", clay,
             grid + "stress = \"points\"\n"),
-      plane(box + "[body.initial]\ndensity = 1310.0\n", law, grid),
+      plane(box + "restitution = 0.6\n[body.initial]\ndensity = 1310.0\n", law, grid),
       plane(box + "[body.initial]\nv = 2.1\n", clay, grid),
       plane(box + "[body.initial]\ne = 1.1\n", clay, grid),
       plane(box + "[body.initial]\nsigma = [2e4, 2.5e4, 2e4, 0.0, 0.0, 0.0]\n", clay, grid),

@@ -53,6 +53,7 @@ void expect_same(const SceneFile& a, const SceneFile& b) {
     EXPECT_EQ(p.velocity, q.velocity);
     EXPECT_EQ(p.spin, q.spin);
     EXPECT_EQ(p.lithostatic, q.lithostatic);
+    EXPECT_EQ(p.restitution, q.restitution);
     EXPECT_EQ(p.law.name, q.law.name);
     EXPECT_EQ(p.law.options, q.law.options);
     EXPECT_EQ(p.law.values, q.law.values);
@@ -84,6 +85,7 @@ TEST(ResolvedInput, keeps_every_digit_and_every_kind_of_key) {
       "-12.3456789012345678\n"
       "[domain]\nsize = [0.9, 0.9]\nfloor = { friction = 0.123456789012345678 }\nright = \"open\"\n"
       "[[body]]\nname = 'a \"b\" \\ c'\nsize = [0.3, 0.3]\nvelocity = [1e-17, -3]\nspin = 1e5\n"
+      "restitution = 0.61234567890123456\n"
       "law = { name = \"mu_i\", mu_0 = 0.3, mu_d = 0.5, I_0 = 0.1, d = 1e-3, rho_p = 2e3, rho_0 = "
       "1300, K = 1e6, G = 123456.7 }\n"
       "initial = { sigma = [1e3, 1100, 1e3, 50, 0, 0] }\n"

@@ -36,7 +36,9 @@ Scene everything(Kernel kernel) {
   }
   Body both =
       block(0.0125, 0.0, 0.0625, 0.1, critical_state());  // beside the others: a column that slumps
+  both.restitution = 0.3;  // contacts that damp, with stresses of their own
   scene.bodies.push_back(both);
+  scene.bodies[0].restitution = 0.5;
   scene.bodies[2].velocity[0] = 6.0;  // leaves at once
   return scene;
 }
