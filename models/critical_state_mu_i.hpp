@@ -149,6 +149,14 @@ struct CriticalStateMuI {
   template <class T, int N>
   static T flow_number(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at);
 
+  /// A point that is held at `denser` times its density: p_c0 is what CSM-2 gives for it under the
+  /// same p. Without it dilation that is not let happen would count as the way back.
+  template <class T>
+  static void hold_volume(const Params<T>& P, const T& denser, State<T>& at) {
+    const T held = at[i_ln_p_c] + ln(denser) / (P.lambda - P.kappa);
+    at[i_ln_p_c] = select(at[i_rho_sep] > T(0.0), at[i_ln_p_c], held);
+  }
+
   /// The derived variables: 2p_s = p_c0 e^{jI} and I.                                    CSM-2
   template <class T, int N>
   static std::array<T, 2> derive(const Params<T>& P, const Sym<T, N>& stress, const State<T>& at) {

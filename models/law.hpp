@@ -117,6 +117,9 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 /// A law may say more:
 ///   derived, derive(P, σ, state)     table and values of variables that follow from the state, for
 ///                                    output (derived_fields())
+///   hold_volume(P, denser, state)    for a state that says the volume: a point is held at `denser`
+///   >= 1
+///                                    times its density
 ///   rate_dependent                   the plastic rate has terms without D: stress beyond yield
 ///   flows steady_shear_stress(P, p, γ̇)     τ of steady shear (shear_response.hpp)
 /// LawDefaults answers what a simple law has no more to say about.

@@ -35,6 +35,13 @@ class LawMaterial final : public Material {
   UpdateReport update(const Batch& batch) const override { return update_all(batch); }
   UpdateReport update(const SpatialBatch& batch) const override { return update_all(batch); }
 
+  void hold_volume(const Batch& batch, const double* denser) const override {
+    hold_all(batch, denser);
+  }
+  void hold_volume(const SpatialBatch& batch, const double* denser) const override {
+    hold_all(batch, denser);
+  }
+
   void stored_energy(const Batch& batch, double* energy) const override {
     store_energy(batch, energy);
   }
@@ -95,6 +102,21 @@ class LawMaterial final : public Material {
     const auto P = parameters<T>();  // no store can alias it, so that it may stay in registers
     for (std::size_t i = 0; i < batch.count; i += T::size) update<T>(P, batch, i, report);
     return report;
+  }
+
+  template <int N>
+  void hold_all([[maybe_unused]] const BatchOf<N>& batch,
+                [[maybe_unused]] const double* denser) const {
+    if constexpr (requires(typename L::template State<Pack> & at) {
+                    L::hold_volume(packed_, Pack(1.0), at);
+                  }) {
+      for (std::size_t i = 0; i < batch.count; i += Pack::size) {
+        auto point = load_point<Pack>(batch, i);
+        L::hold_volume(packed_, load<Pack>(denser + i), point.state);
+        for (std::size_t k = 0; k < L::state.size(); ++k)
+          point.state[k].store_unaligned(batch.state[k] + i);
+      }
+    }
   }
 
   template <int N>

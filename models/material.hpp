@@ -76,6 +76,11 @@ class Material {
   virtual UpdateReport update(const Batch& batch) const = 0;
   virtual UpdateReport update(const SpatialBatch& batch) const = 0;
 
+  /// Tells points that the solver has not let dilate as far as their strain said, at `denser` >= 1
+  /// times the density that the update left: where a state says the volume, it follows.
+  virtual void hold_volume(const Batch& /*batch*/, const double* /*denser*/) const {}
+  virtual void hold_volume(const SpatialBatch& /*batch*/, const double* /*denser*/) const {}
+
   /// Recoverable energy per current volume of each point [J/m³].
   virtual void stored_energy(const Batch& batch, double* energy) const = 0;
   virtual void stored_energy(const SpatialBatch& batch, double* energy) const = 0;

@@ -254,11 +254,13 @@ void Simulation::Impl<dim>::hold_density(PointsOf<dim>& points, const SlotRange&
     kept.store_aligned(rho + k);
     // the work of the step was done over the volume that it led to
     const Pack smaller = kept / now;
+    smaller.store_aligned(stored + k);
     for (double* const energy :
          {batch.work, batch.plastic, batch.viscous, batch.hypoelastic, batch.separation})
       if (energy != nullptr) (smaller * Pack::load_aligned(energy + k)).store_aligned(energy + k);
     if (averages()) (smaller * Pack::load_aligned(averaging + k)).store_aligned(averaging + k);
   }
+  points.material->hold_volume(batch, stored);
   sums.held += static_cast<std::int64_t>(xsimd::hadd(held));
   sums.held_energy += before - stored_energy();
 }

@@ -55,6 +55,22 @@ TEST(CriticalStateCollapse, EveryPointKeepsTheStateRelationAndComesToRest) {
   EXPECT_GT(end.height_m, 0.1) << "and keeps a heap";
 }
 
+// Spray so loose that the grid cannot tell is held at the density floor; its state is held with it.
+// (It was not: p_c0 went on falling to e^-377 of a pascal, for which the way back was 760 times the
+// density.)
+TEST(CriticalStateCollapse, PointsHeldAtTheDensityFloorKeepTheStateRelation) {
+  Scene scene = collapse(0.5, 35.0);
+  scene.domain[0] = 2.4;
+  Simulation simulation(scene, 2);
+  for (const double time : {0.5, 0.8, 1.1}) {
+    run_until(simulation, time);
+    int bearing = 0;
+    EXPECT_LT(off_the_lines(simulation, scene.bodies[0].law, bearing), 1e-12) << time;
+    for (const PointState& at : points_of(simulation)) EXPECT_LT(at[RHO], 2000.0) << time;
+  }
+  EXPECT_GT(simulation.counters().point_steps_held, 100);
+}
+
 // tan 35° = 0.70 is above μ_d = 0.57: what reaches the far wall is still in motion, and so is the
 // rest.
 TEST(CriticalStateCollapse, KeepsFlowingDownASteepSlope) {
