@@ -3,16 +3,15 @@
 /// The shape of the cone of friction: how much of the strength that a law has in triaxial
 /// compression, q = Mp, there is in other directions of shear (physics.md, CONE).
 ///
-///   circle            the same in all (Drucker & Prager): a friction angle of 22° in plane strain
-///   is
-///                     17° in triaxial compression
+///   circle            the same in all (Drucker & Prager): a friction angle of 22° in plane
+///                     strain is 17° in triaxial compression
 ///   matsuoka_nakai    I_1I_2/I_3 = 9 + 8 tan²φ (Matsuoka & Nakai 1974): the same friction angle φ
 ///                     in triaxial compression and extension, a few degrees more between them
 ///
 /// The direction of shear is Lode's angle θ, cos 3θ = (27/2) det s/q³ with compression positive: 1
 /// in triaxial compression, 0 in simple shear, −1 in triaxial extension. Flow stays along s, so
 /// that a return in which s_{n+1} ∥ s_trial keeps θ, and with it the strength, from the trial state
-/// on: what is exact for a circle is exact for any shape.
+/// on: the returns of a circle serve any shape.
 
 #include <array>
 
