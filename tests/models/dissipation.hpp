@@ -69,10 +69,12 @@ Dissipated dissipated(const typename L::template Params<double>& P, const LawPoi
     const double V_mean = t == 0.0 ? V1 : V1 * std::expm1(-t) / -t;
     const double kappa_step = kappa_at(P.rho_p * V_mean);
     const double x = std::log(pt1 / pt0);
-    // (of the critical-state law: the mean of the elastic predictor; its flow rule makes the sum
-    // λ_p p[p_s + (M_I² − 1)(2p_s − p)] times 2V₁, and 2p_s ≥ p)
-    const double G_mean = P.shear_ratio() * pt0 *
-                          expm1_over(is_at_rest ? x : -trace(strain) / kappa_step) / kappa_step;
+    // (of the critical-state law, and of Cam-Clay on a cone: the mean of the elastic predictor, to
+    // 30κ; the flow rule of the former makes the sum λ_p p[p_s + (M_I² − 1)(2p_s − p)] times 2V₁,
+    // and 2p_s ≥ p)
+    const bool held = !is_at_rest || !cone::is_circle(P.shape);
+    const double x_mean = held ? std::min(-trace(strain) / kappa_step, 30.0) : x;
+    const double G_mean = P.shear_ratio() * pt0 * expm1_over(x_mean) / kappa_step;
     const auto shear_energy = [&](const LawPoint<L>& at, const Sym<double, 6>& s) {
       const double G = P.shear_ratio() * (pressure(at.stress) + at_rest.p_shift) /
                        kappa_at(P.rho_p / at.density);
