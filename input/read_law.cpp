@@ -8,6 +8,8 @@
 #include "input/key_info.hpp"
 #include "input/toml_text.hpp"
 #include "input/write_keys.hpp"
+#include "models/cone.hpp"
+#include "pointdriver/study/laboratory_figures.hpp"
 
 namespace repose::input {
 namespace {
@@ -173,6 +175,33 @@ LawSpec read_law(TomlReader law) {
   return spec;
 }
 
+namespace {
+
+/// "; 17.3° in triaxial compression, 22.4° in plane flow": what a friction means as an angle, which
+/// on a circle is another one in every direction of shear.
+std::string as_angles(const LawInfo& info, std::span<const double> theta, std::size_t i) {
+  const ParamInfo& parameter = info.parameters[i];
+  if (parameter.angle.name.empty()) return "";
+  // a parameter with an angle is proportional to q/p
+  const auto slope = [&](std::size_t k) {
+    return theta[k] * cone::slope_of_angle(30.0) / info.parameters[k].angle.parameter_of(30.0);
+  };
+  const auto at_rest = static_cast<std::size_t>(
+      std::find_if(info.parameters.begin(), info.parameters.end(),
+                   [](const ParamInfo& p) { return !p.angle.name.empty(); }) -
+      info.parameters.begin());
+  const int shape = point::parameter_index(info.parameters, cone::shape.name);
+  const double share =
+      shape < 0 ? 1.0 : cone::shear_share(theta[static_cast<std::size_t>(shape)], slope(at_rest));
+  const double compression = point::critical_friction_angle(slope(i), 0.0);
+  const double plane = point::critical_friction_angle(share * slope(i), 0.5);
+  if (!std::isfinite(compression) || !std::isfinite(plane)) return "";
+  return fmt::format("; {:.1f}° in triaxial compression, {:.1f}° in plane flow", compression,
+                     plane);
+}
+
+}  // namespace
+
 std::string law_lines(const LawSpec& spec) {
   const LawInfo& info = find_law(spec);
   const std::vector<double> theta = checked_parameters(spec);
@@ -186,10 +215,10 @@ std::string law_lines(const LawSpec& spec) {
     if (std::isnan(theta[i])) continue;
     const bool derived =
         parameter.need == Need::optional && !spec.values.contains(std::string(parameter.name));
-    out += key_line(fmt::format("{}{}", derived ? "# " : "", parameter.name),
-                    value_text(parameter, theta[i]),
-                    fmt::format("{}{}", derived ? "derived: " : "",
-                                unit_and_doc(parameter.unit, parameter.doc)));
+    out += key_line(
+        fmt::format("{}{}", derived ? "# " : "", parameter.name), value_text(parameter, theta[i]),
+        fmt::format("{}{}{}", derived ? "derived: " : "",
+                    unit_and_doc(parameter.unit, parameter.doc), as_angles(info, theta, i)));
   }
   return out;
 }

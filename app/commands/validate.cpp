@@ -149,7 +149,7 @@ Command add_validate(CLI::App& root) {
   verb.footer(
       "Examples:\n"
       "  repose validate                          every case that comes with the program\n"
-      "  repose validate data/benchmarks/rods --law mu_i --coarse\n"
+      "  repose validate collapse_rods --law mu_i --coarse\n"
       "  repose validate --resume                 after an interruption (Ctrl-C)\n"
       "Writes validation.md, and per case result.csv and result.svg. Runs that are there already\n"
       "are not repeated. Returns 3 if a figure has no value, 0 whatever the verdicts are.");

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "mpm/scene/restitution.hpp"
 #include "mpm/step/simulation_impl.hpp"
 #include "mpm/study/needs.hpp"
 
@@ -69,7 +70,12 @@ StepLimits limits_on_the_way(const Scene& scene, const Density& density) {
     const auto material = make_material(body.law);
     const double weight = density(*material, body) * scene.gravity * body.size[1];
     const AtRest rest = at_rest_under(*material, 2.0 * weight);
-    signal = std::max(signal, rest.wave_speed + std::hypot(body.velocity[0], body.velocity[1]));
+    const double damped =
+        body.restitution
+            ? damped_signal(damping_length(*body.restitution, material->parameter("d")), scene.h)
+            : 1.0;
+    signal =
+        std::max(signal, damped * rest.wave_speed + std::hypot(body.velocity[0], body.velocity[1]));
     diffusivity = std::max(diffusivity, rest.diffusivity);
   }
   signal += std::sqrt(2.0 * scene.gravity * top);

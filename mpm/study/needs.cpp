@@ -44,6 +44,7 @@ Needs needs_in(const Scene& scene) {
         scene.storage == Storage::single_precision ? sizeof(float) : sizeof(double);
     const double fields = static_cast<double>(
         Layout<dim>::state + max_state +
+        (body.restitution ? PointsOf<dim>::force_components : std::size_t{0}) +
         (scene.transfer == Transfer::relaxed ? Layout<dim>::gradient : std::size_t{0}));
     slots_bytes += slots * (fields * field_bytes + sizeof(std::int64_t));
     point_blocks += own;

@@ -17,14 +17,10 @@ double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 /// deviator: σ_k = p + 2√(J_2/3) cos(θ − 2πk/3), cos 3θ = (3√3/2) J_3/J_2^{3/2}.
 std::array<double, 3> principal(const Sym<double, 6>& stress) {
   const double p = pressure(stress);
-  Sym<double, 6> s = deviator(stress);
-  for (double& x : s.c) x = -x;
+  const Sym<double, 6> s = deviator(stress);
   const double root = shear_norm(s);  // √J_2
   if (!(root > 0.0)) return {p, p, p};
-  const double J3 = s[0] * (s[1] * s[2] - s[4] * s[4]) - s[3] * (s[3] * s[2] - s[4] * s[5]) +
-                    s[5] * (s[3] * s[4] - s[1] * s[5]);
-  const double cosine = 1.5 * std::sqrt(3.0) * J3 / (root * root * root);
-  const double theta = std::acos(std::clamp(cosine, -1.0, 1.0)) / 3.0;
+  const double theta = std::acos(cone::cos_3_theta(s)) / 3.0;
   const auto part = [&](int k) {
     return p + 2.0 * root / std::sqrt(3.0) * std::cos(theta - 2.0 * std::numbers::pi * k / 3.0);
   };

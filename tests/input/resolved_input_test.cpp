@@ -119,6 +119,9 @@ TEST(ResolvedInput, has_friction_once_and_the_cone_by_name) {
   EXPECT_EQ(law.values.at("shape"), 1.0);
   const std::string text = resolved_input(first, "From a test");
   EXPECT_NE(text.find("\nshape = \"matsuoka_nakai\""), std::string::npos) << text;
+  // tan φ = 0.3899: sin of plane flow is 2t/√(3 + 4t²) = 0.4104
+  EXPECT_NE(text.find("; 21.3° in triaxial compression, 24.2° in plane flow"), std::string::npos)
+      << text;
   expect_same(first, reread(text));
 }
 

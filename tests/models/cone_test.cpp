@@ -90,23 +90,28 @@ TEST(ConeTest, TheRootIsFoundForEveryFriction) {
   }
 }
 
-// d ln g/dt against a central difference, whose error is that of the third derivative, h², and of
-// round-off, ε/h: for h = 1e-5 of a direction of size 1, 1e-10 and 1e-11. Directions close to the
-// axes, where g's curvature is of order one still, count alike.
+// d ln g/dt against a central difference D(h) along directions of size 1: 4/3|D(h) − D(h/2)|
+// estimates its error by the third derivative, and ln g is known to some 10 ε.
 TEST(ConeTest, ItsRateIsItsDerivative) {
   Random random(3);
+  int sharp = 0;
   for (int sample = 0; sample < 2000; ++sample) {
     const double M = random(0.1, 1.8);
     const bool plane = sample % 2 == 0;
     Sym<double, 6> s = deviator(random.tensor(1.0, plane));
     s = (1.0 / mises(s)) * s;
     const Sym<double, 6> rate = deviator(random.tensor(1.0, plane));
-    const double h = 1e-5;
-    const double difference =
-        (std::log(cone::share(mn, M, s + h * rate)) - std::log(cone::share(mn, M, s - h * rate))) /
-        (2.0 * h);
+    const double h = 1e-4;
+    const auto difference = [&](double step) {
+      return (std::log(cone::share(mn, M, s + step * rate)) -
+              std::log(cone::share(mn, M, s - step * rate))) /
+             (2.0 * step);
+    };
+    const double whole = difference(h), half = difference(0.5 * h);
     const double exact = cone::share_rate(mn, M, s, rate);
-    EXPECT_NEAR(exact, difference, 1e-7);
+    const double tolerance = 4.0 / 3.0 * std::abs(whole - half) + 4.0 * 10.0 * epsilon / h;
+    EXPECT_NEAR(exact, half, tolerance);
+    if (tolerance < 1e-6) ++sharp;
     if (plane) {
       EXPECT_NEAR(cone::share_rate(mn, M, LawPoint<MuIRegularised>::truncated<4>(s),
                                    LawPoint<MuIRegularised>::truncated<4>(rate)),
@@ -122,40 +127,36 @@ TEST(ConeTest, ItsRateIsItsDerivative) {
     const D g = cone::share(D(mn), D(M), moving);
     EXPECT_NEAR(g.v[0] / g.a, exact, 1e-12 * (1.0 + std::abs(exact)));
   }
+  EXPECT_GT(sharp, 1900) << "comparisons that say something";
   const Sym<double, 6> none{};
   EXPECT_EQ(cone::share_rate(mn, 1.0, none, Sym<double, 6>{{1.0, 0.0, -1.0}}), 0.0);
   EXPECT_EQ(cone::share(mn, 1.0, none), 1.0);
 }
 
-/// Deformation at constant volume until nothing changes any more.
-template <class L>
-LawPoint<L> steady(const LawExample& example, const Sym<double, 6>& strain) {
-  const auto P = parameters_of<L>(example);
-  InitialConditions given;
-  given.p = example.pressure;
-  const InitialPoint start = L::initial(P, given);
-  LawPoint<L> point{start.stress, {}, start.density};
-  for (std::size_t k = 0; k < start.state.size(); ++k) point.state[k] = start.state[k];
-  for (int step = 0; step < 40'000; ++step) EXPECT_FALSE(point.step(P, strain, 1e3 * example.time));
-  return point;
-}
-
-// Slow flow at constant volume ends at q = M g p of its direction, s along the strain.
+// Slow flow at constant volume ends at q = M g p of its direction. From the exact undrained
+// solution M g − q/p = 2M g e^{−M g ε_q/(κ*Λ)}: with κ* = 0.028, Λ = 0.61 and ε_q = 0.7 a share of
+// e^{−28}; 40 000 steps round by ε each.
 TEST(ConeTest, CriticalStateIsOnTheCone) {
-  const Sym<double, 6> compression{{0.5, -1.0, 0.5}}, extension{{-0.5, 1.0, -0.5}},
-      shear{{0.0, 0.0, 0.0, 0.8}};
-  const auto check = [&]<class L>(L, const Sym<double, 6>& way, double share_of_M) {
-    for (const LawExample& example : examples_of<L>()) {
-      if (!example.spec.values.contains("shape")) continue;
-      const auto P = parameters_of<L>(example);
-      const LawPoint<L> end = steady<L>(example, (1e-3 * example.strain) * way);
-      EXPECT_NEAR(mises(end.stress) / pressure(end.stress), P.M * share_of_M, 1e-6 * P.M)
+  using L = ModifiedCamClay<Compression::v_ln_p>;
+  for (const LawExample& example : examples_of<L>()) {
+    if (!example.spec.values.contains("shape")) continue;
+    const auto P = parameters_of<L>(example);
+    const double sine = 3.0 * P.M / (6.0 + P.M), t = std::tan(std::asin(sine));
+    const std::array<std::pair<Sym<double, 6>, double>, 3> ways{{
+        {{{0.5, -1.0, 0.5}}, P.M},
+        {{{-0.5, 1.0, -0.5}}, 6.0 * sine / (3.0 + sine)},
+        {{{0.0, 0.0, 0.0, 0.8}}, std::sqrt(3.0) * 2.0 * t / std::sqrt(3.0 + 4.0 * t * t)},
+    }};
+    for (const auto& [way, slope] : ways) {
+      InitialConditions given;
+      given.p = example.pressure;
+      const InitialPoint start = L::initial(P, given);
+      LawPoint<L> point{start.stress, {start.state[0], start.state[1]}, start.density};
+      for (int step = 0; step < 40'000; ++step)
+        ASSERT_FALSE(point.step(P, (1e-3 * example.strain) * way, example.time));
+      EXPECT_NEAR(mises(point.stress) / pressure(point.stress), slope, 4e4 * epsilon * slope)
           << example.label;
     }
-  };
-  for (const Sym<double, 6>* way : {&compression, &extension, &shear}) {
-    const auto share = [&](double M) { return cone::share(mn, M, *way); };
-    check(ModifiedCamClay<Compression::v_ln_p>{}, *way, share(0.888));
   }
 }
 
@@ -183,7 +184,7 @@ TEST(ConeTest, SteadyShearOfGrainsIsOnTheCone) {
         auto round_P = P;
         round_P.shape = 0.0;
         const double of_circle = L::steady_shear_stress(round_P, p, gamma_dot);
-        EXPECT_NEAR(shear_norm(deviator(end.stress)), g * of_circle, 1e-9 * of_circle)
+        EXPECT_NEAR(shear_norm(deviator(end.stress)), g * of_circle, 500.0 * epsilon * of_circle)
             << example.label;
         if (way[3] != 0.0) {
           EXPECT_NEAR(L::steady_shear_stress(P, p, gamma_dot), g * of_circle, 1e-12 * of_circle);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "mpm/scene/restitution.hpp"
+#include "mpm/study/estimate.hpp"
 #include "tests/mpm/scenes.hpp"
 
 namespace repose::mpm {
@@ -109,6 +110,13 @@ TEST(ContactDampingTest, AWaveDecaysAsTheGrainsSayWhateverTheCells) {
   }
 }
 
+// What `repose check` says of steps and time knows the damping.
+TEST(ContactDampingTest, TheEstimateTakesTheShorterStep) {
+  const double plain = count_estimate(layer(16, 0.02, {})).wave_dt_s;
+  const double damped = count_estimate(layer(16, 0.02, 0.3)).wave_dt_s;
+  EXPECT_NEAR(plain / damped, damped_signal(damping_length(0.3, 0.02), height / 16.0), 1e-12);
+}
+
 TEST(ContactDampingTest, ContactsThatGiveEverythingBackLeaveTheBitsAlone) {
   const auto end = [](std::optional<double> restitution) {
     const Scene scene = layer(8, 0.02, restitution);
@@ -132,8 +140,11 @@ Scene collapse(double restitution, const LawSpec& law) {
   return scene;
 }
 
-// What the contacts take is booked as viscous work of its own; the stress work is still explained
-// to the error of its means, and the grains come to rest where they did, to a few per cent.
+// What the contacts take is booked as viscous work: the stress work is explained to a twentieth of
+// it, so that leaving it out, or taking one end of a step for the mean of two, is seen. The
+// residual of all energies, an error of the step's second order, is what it was. The heap moves by
+// less than another relaxation time moves it at cells of this size (docs/transfers.md: 5 %), and is
+// as much at rest.
 TEST(ContactDampingTest, ItsWorkIsInTheLedgerAndTheHeapStays) {
   for (const LawSpec& law : {mu_i(), critical_state()}) {
     Simulation plain(collapse(1.0, law), 1), damped(collapse(0.3, law), 1);
@@ -142,11 +153,10 @@ TEST(ContactDampingTest, ItsWorkIsInTheLedgerAndTheHeapStays) {
     const SeriesRow a = plain.diagnostics(), b = damped.diagnostics();
     EXPECT_EQ(a.viscous_J_per_m, 0.0);
     EXPECT_GT(b.viscous_J_per_m, 0.0);
-    const double drop = b.plastic_J_per_m;
-    EXPECT_LT(std::abs(b.work_residual_J_per_m), 2e-2 * drop);
-    EXPECT_LT(std::abs(b.energy_residual_J_per_m), 2e-2 * drop);
+    EXPECT_LT(std::abs(b.work_residual_J_per_m), 0.05 * b.viscous_J_per_m) << law.name;
+    EXPECT_LT(std::abs(b.energy_residual_J_per_m), 2.0 * std::abs(a.energy_residual_J_per_m));
     EXPECT_NEAR(b.height_m, a.height_m, 0.05 * a.height_m);
-    EXPECT_LT(b.kinetic_J_per_m, 1e-3 * drop);
+    EXPECT_LT(b.kinetic_J_per_m, 3.0 * a.kinetic_J_per_m);
   }
 }
 
