@@ -307,6 +307,8 @@ void output_keys(Keys& keys, SceneFile& file) {
        "for none",
        not_negative},
       file.checkpoint_interval);
+  keys.boolean({"shear_strain", "-", "of every point since the start, in frames"},
+               file.scene.shear_strain);
   keys.choice(
       {"stress", "-",
        "of frames and final.svg: averaged over a point's neighbourhood, as the grid sees it, "

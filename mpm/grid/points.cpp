@@ -69,6 +69,7 @@ PointsOf<dim>& PointsOf<dim>::unpacked(const SlotRange& range) const {
   copy.rho_0 = rho_0;
   copy.count = range.count;
   copy.fields = fields;
+  copy.shear_strain = shear_strain;
   copy.affine = affine;
   copy.force_stress = force_stress;
   copy.damping_length = damping_length;

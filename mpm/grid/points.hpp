@@ -92,13 +92,15 @@ struct PointsOf {
   using Batch = BatchOf<static_cast<int>(At::components)>;
   static constexpr std::size_t force_components = dim == 2 ? 3 : 6;
   static constexpr std::size_t most_fields =
-      At::state + max_state + force_components + At::gradient;
+      At::state + max_state + 1 + force_components + At::gradient;
 
   std::shared_ptr<const Material> material;
   double rho_0 = 0.0;     ///< reference density for solid depths [kg/m³]
   std::size_t count = 0;  ///< points (without padding)
-  /// state + state variables of the law + stress of the explicit forces + own affine field
+  /// state + state variables of the law + shear strain + stress of the explicit forces + own affine
+  /// field
   std::size_t fields = At::state;
+  std::size_t shear_strain = 0;  ///< field of ∫γ̇ dt, γ̇ = √(2D′:D′); 0: not kept
   /// First of the fields (row by row) of the affine velocity that goes to the grid: L, or one
   /// behind the state where it is kept apart from the velocity gradient.
   std::size_t affine = At::L;
@@ -125,9 +127,10 @@ struct PointsOf {
   bool damps() const { return damping_length > 0.0; }
   bool splits_stress() const { return force_stress[0] != At::stress && !damps(); }
   std::size_t state_fields() const {
-    return (splits_stress() || damps() ? force_stress[0]
-            : affine == At::L          ? fields
-                                       : affine) -
+    return (shear_strain != 0            ? shear_strain
+            : splits_stress() || damps() ? force_stress[0]
+            : affine == At::L            ? fields
+                                         : affine) -
            At::state;
   }
   std::size_t bytes_per_slot() const {

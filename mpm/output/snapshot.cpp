@@ -1,6 +1,7 @@
 /// The points as they are, in the order of their names.
 
 #include <algorithm>
+#include <limits>
 
 #include "mpm/output/averaged_stress.hpp"
 #include "mpm/step/simulation_impl.hpp"
@@ -58,6 +59,23 @@ Simulation::Snapshot Simulation::Impl<dim>::snapshot() const {
       shot.szx.push_back(stress[5]);
     }
     shot.body.push_back(static_cast<std::int32_t>(place.body));
+    shot.id.push_back(place.id);
+    if (points.shear_strain != 0) shot.shear_strain.push_back(at(points.shear_strain));
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto table = bodies[b].material->law().state;
+    for (std::size_t k = 0; k < table.size(); ++k) {
+      auto variable = std::find_if(shot.state.begin(), shot.state.end(), [&](const auto& known) {
+        return known.field->name == table[k].name && known.field->unit == table[k].unit;
+      });
+      if (variable == shot.state.end()) {
+        const double none = std::numeric_limits<double>::quiet_NaN();
+        shot.state.push_back({&table[k], std::vector<double>(places.size(), none)});
+        variable = shot.state.end() - 1;
+      }
+      for (std::size_t i = 0; i < places.size(); ++i)
+        if (places[i].body == b) variable->values[i] = bodies[b][F::state + k][places[i].slot];
+    }
   }
   return shot;
 }
@@ -81,6 +99,12 @@ Simulation::Snapshot Simulation::Snapshot::slice(double from, double to) const {
     if (!(z_m[k] >= from && z_m[k] < to)) continue;
     for (const Column column : columns) (part.*column).push_back((this->*column)[k]);
     part.body.push_back(body[k]);
+    part.id.push_back(id[k]);
+    if (!shear_strain.empty()) part.shear_strain.push_back(shear_strain[k]);
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      if (part.state.size() == i) part.state.push_back({state[i].field, {}});
+      part.state[i].values.push_back(state[i].values[k]);
+    }
   }
   return part;
 }

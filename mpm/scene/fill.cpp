@@ -40,6 +40,7 @@ void append(PointsOf<dim>& points, const std::array<double, dim>& x, const Body&
   points.append(F::rho, at.density);
   points.append(F::mass, at.density * volume);
   for (std::size_t k = 0; k < at.state.size(); ++k) points.append(F::state + k, at.state[k]);
+  if (points.shear_strain != 0) points.append(points.shear_strain, 0.0);
   if (points.splits_stress()) {
     points.append(points.force_stress[0], mean(at.stress));
     points.append(points.force_stress[2], 0.0);
@@ -156,6 +157,7 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   points.material =
       within("law", [&] { return std::shared_ptr<const Material>(make_material(body.law)); });
   points.fields = F::state + points.material->law().state.size();
+  if (scene.shear_strain) points.shear_strain = points.fields++;
   if constexpr (dim == 2) {
     if (scene.viscosity == Viscosity::implicit_solve && !points.material->law().has_stress_memory) {
       points.force_stress = {points.fields, points.fields, points.fields + 1};

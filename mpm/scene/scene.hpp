@@ -139,6 +139,7 @@ struct Scene {
   double courant = 0.8;      ///< Δt = courant · h/(c + |v|), if dt is absent; see step_size.hpp
   std::optional<double> dt;  ///< fixed step [s]
 
+  bool shear_strain = false;     ///< points remember ∫γ̇ dt
   double frame_interval = 0.0;   ///< [s]; 0: no frames
   double series_interval = 0.0;  ///< [s]; 0: first and last row only
 };

@@ -175,6 +175,13 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
     least_volume = min_of(least_volume, of_step.volume);
     for (std::size_t i = 0; i < e.size(); ++i) of_step.strain[i].store_aligned(e[i] + k);
     for (std::size_t i = 0; i < spin.size(); ++i) of_step.spin[i].store_aligned(spin[i] + k);
+    if (points.shear_strain != 0) {
+      double* const gamma = points.data(points.shear_strain) + range.begin + k;
+      const Pack more =
+          Pack(2.0) *
+          shear_norm(deviator(Sym<Pack, static_cast<int>(F::components)>{of_step.strain}));
+      (Pack::load_aligned(gamma) + more).store_aligned(gamma);
+    }
   }
   if (any(!(least_volume > zero)) && sums.failure.empty())
     sums.failure = fmt::format(

@@ -97,6 +97,14 @@ class Simulation {
     std::vector<double> mass;               ///< [kg/m], in space [kg]
     std::vector<double> z_m, vz, syz, szx;  ///< in space, else empty
     std::vector<std::int32_t> body;
+    std::vector<std::int64_t> id;      ///< number of the point, from 0 in the order of creation
+    std::vector<double> shear_strain;  ///< ∫γ̇ dt [-] of a scene that keeps it, else empty
+    /// A state variable of a law; NaN at the points of laws without one of this name.
+    struct StateVariable {
+      const StateField* field;
+      std::vector<double> values;
+    };
+    std::vector<StateVariable> state;
     io::FrameView view(double time_s) const;  ///< refers to this snapshot
     /// In space, the points between two heights z [m].
     Snapshot slice(double from, double to) const;

@@ -1,6 +1,7 @@
 #include "report/page/read_result.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <set>
@@ -70,10 +71,19 @@ std::vector<fs::path> files_in(const fs::path& folder) {
                                      folder.string(), below)});
 }
 
+/// The page is sent by mail: it leaves to ParaView what frames carry beyond the usual colours.
+bool is_for_the_page(const io::Frame::Field& field) {
+  constexpr std::array<std::string_view, 6> usual{
+      "body", "density_kg_per_m3", "mises_Pa", "pressure_Pa", "shear_strain", "velocity_m_per_s"};
+  return std::find(usual.begin(), usual.end(), field.name) != usual.end();
+}
+
 Json frames_of(const fs::path& series) {
   const std::vector<io::FrameEntry> entries = io::read_frame_series(series);
   return pack_frames(entries.size(), [&](std::size_t i) {
-    return io::read_frame(series.parent_path() / entries[i].file_name);
+    io::Frame frame = io::read_frame(series.parent_path() / entries[i].file_name);
+    std::erase_if(frame.fields, [](const auto& field) { return !is_for_the_page(field); });
+    return frame;
   });
 }
 

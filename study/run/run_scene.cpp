@@ -10,6 +10,7 @@
 #include "input/resolved_scene.hpp"
 #include "io/interrupt.hpp"
 #include "io/json.hpp"
+#include "mpm/output/frame_fields.hpp"
 #include "mpm/study/needs.hpp"
 #include "study/run/output_schedule.hpp"
 #include "study/run/run_record.hpp"
@@ -68,7 +69,9 @@ class Run {
         record_(simulation_),
         schedule_(scene_.end_time, scene_.series_interval, scene_.frame_interval),
         folder_(request.folder),
-        claim_(folder_) {}
+        claim_(folder_) {
+    if (scene_.frame_interval > 0.0) frame_fields_.emplace(simulation_);
+  }
 
   io::ExitCode go();
 
@@ -102,6 +105,7 @@ class Run {
   io::FolderClaim claim_;
   std::optional<io::RowWriter> series_;
   std::optional<io::FrameWriter> frames_;
+  std::optional<mpm::FrameFields> frame_fields_;
   double next_checkpoint_ = 0.0;           ///< by the clock of usage() [s]
   std::set<std::string> told_;             ///< warnings already printed, without_figures()
   std::vector<std::string> own_warnings_;  ///< beside the simulation's
@@ -253,7 +257,7 @@ void Run::write_due() {
 
 void Run::write_frame() {
   const mpm::Simulation::Snapshot shot = simulation_.snapshot(request_.file.stress);
-  if (!shot.x_m.empty()) frames_->write(shot.view(simulation_.time()));
+  if (!shot.x_m.empty()) frames_->write(frame_fields_->view(shot, simulation_.time()));
 }
 
 void Run::write_profile() const {
