@@ -91,6 +91,12 @@ io::ExitCode misuse(const std::string& message, const CLI::App* verb) {
   return io::ExitCode::bad_input;
 }
 
+std::vector<Command> add_commands(CLI::App& root) {
+  return {add_run(root),    add_check(root), add_models(root),    add_point(root),
+          add_chart(root),  add_fit(root),   add_stability(root), add_validate(root),
+          add_report(root), add_schema(root)};
+}
+
 io::ExitCode parse_and_run(std::span<const char* const> arguments) {
   CLI::App root(overview, "repose");
   root.set_help_flag("-h,--help", "Show this and exit");
@@ -103,9 +109,7 @@ io::ExitCode parse_and_run(std::span<const char* const> arguments) {
   root.require_subcommand(1);
   root.footer(examples);
   root.get_formatter()->column_width(32);
-  const std::vector<Command> commands{
-      add_run(root), add_check(root),     add_models(root),   add_point(root),  add_chart(root),
-      add_fit(root), add_stability(root), add_validate(root), add_report(root), add_schema(root)};
+  const std::vector<Command> commands = add_commands(root);
 
   if (arguments.size() < 2) {
     fmt::print(stderr, "{}", root.help());
@@ -240,6 +244,21 @@ void add_run_options(Verb& verb, CommonOptions& options) {
   verb.flag("--resume", options.resume, "Continue from the checkpoint in the result folder");
   add_no_plot(verb, options);
   add_quiet(verb, options);
+}
+
+io::ExitCode run_verb(std::span<const std::string> arguments) {
+  CLI::App root(overview, "repose");
+  root.require_subcommand(1);
+  const std::vector<Command> commands = add_commands(root);
+  try {
+    // CLI11 takes them from the last to the first
+    root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::ParseError& error) {
+    throw input::BadInput({error.what()});
+  }
+  for (const Command& command : commands)
+    if (command.verb->parsed()) return command.run();
+  return io::ExitCode::bad_input;
 }
 
 int run_command_line(int argc, const char* const* argv) {

@@ -215,6 +215,14 @@ InputFile InputFile::parse(std::string_view text, std::string name,
   return input.with(overrides);
 }
 
+InputFile InputFile::from_table(std::string_view text, std::string name,
+                                std::span<const std::string> overrides) {
+  InputFile input = parse(text, std::move(name));
+  for (auto& [path, origin] : input.origins_)
+    origin = {path.empty() ? input.name_ : fmt::format("{}, {}", input.name_, path)};
+  return input.with(overrides);
+}
+
 InputFile InputFile::with(std::span<const std::string> overrides) const {
   InputFile input = *this;
   for (const std::string& one : overrides) {

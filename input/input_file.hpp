@@ -18,7 +18,8 @@
 
 namespace repose::input {
 
-/// Where a key was written: a line and column of the file, or a --set text (line 0).
+/// Where a key was written: a line and column of the file, or with line 0 a --set text or the key
+/// of a table that a program has made.
 struct Origin {
   std::string source;
   unsigned line = 0;
@@ -58,6 +59,11 @@ class InputFile {
   /// The same from text in memory; `name` stands for the file in messages.
   static InputFile parse(std::string_view text, std::string name,
                          std::span<const std::string> overrides = {});
+
+  /// The same from a table that a program has made: there is no line to point at, so a key's place
+  /// is "NAME, key.path"; files that it names are relative to where the program runs.
+  static InputFile from_table(std::string_view text, std::string name,
+                              std::span<const std::string> overrides = {});
 
   /// This file, as it was parsed, with further overrides. Errors: BadInput.
   InputFile with(std::span<const std::string> overrides) const;

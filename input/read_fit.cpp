@@ -119,10 +119,12 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
 
 FitFile read_fit(const std::filesystem::path& file, std::span<const std::string> overrides,
                  std::uint64_t seed, const std::filesystem::path& cache) {
-  const InputFile given = InputFile::read(file, overrides);
-  std::vector<std::string> sets(overrides.begin(), overrides.end());
-  for (std::string& start : starts_as_overrides(given)) sets.push_back(std::move(start));
-  InputFile input = InputFile::read(file, sets);
+  return read_fit(InputFile::read(file, overrides), seed, cache);
+}
+
+FitFile read_fit(const InputFile& given, std::uint64_t seed, const std::filesystem::path& cache) {
+  const std::filesystem::path file = given.name();
+  InputFile input = given.with(starts_as_overrides(given));
   FitFile out = default_fit();
   read_tables(input, seed, cache, out);
   out.tables = input.tables();

@@ -58,6 +58,11 @@ std::vector<KeyInfo> fit_infos();
 FitFile read_fit(const std::filesystem::path& file, std::span<const std::string> overrides,
                  std::uint64_t seed, const std::filesystem::path& cache = {});
 
+/// The same of a file that was read already. Its measured tables are relative to the folder of its
+/// name.
+FitFile read_fit(const InputFile& given, std::uint64_t seed,
+                 const std::filesystem::path& cache = {});
+
 /// The law with fitted values in place of the free parameters' starts.
 LawSpec fitted_law(const FitFile& file, const Eigen::VectorXd& values);
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <csignal>
+#include <mutex>
 
 namespace repose::io {
 namespace {
@@ -9,7 +10,8 @@ namespace {
 constexpr std::array signals{SIGINT, SIGTERM, SIGHUP};
 
 volatile std::sig_atomic_t flag = 0;
-int guards = 0;  // that live
+std::mutex counting;  // a program may have guards on several threads
+int guards = 0;       // that live
 std::array<struct sigaction, signals.size()> before;
 
 void restore() {
@@ -24,6 +26,7 @@ void note(int signal) {
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
+  const std::lock_guard lock(counting);
   if (guards++ > 0) return;
   flag = 0;
   struct sigaction action {};
@@ -38,6 +41,7 @@ InterruptGuard::InterruptGuard() {
 }
 
 InterruptGuard::~InterruptGuard() {
+  const std::lock_guard lock(counting);
   if (--guards == 0) restore();
 }
 

@@ -4,6 +4,7 @@
 /// those that another program registers. all_laws.hpp has the types of the library's.
 
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -93,11 +94,11 @@ class OutsideExtension {
 /// A form of a law that another program brings along. register_law.hpp makes it of a law's type.
 struct OutsideLaw {
   const LawInfo* info = nullptr;  ///< lives until the program ends
-  void (*complete)(std::vector<double>& theta) = nullptr;
-  std::unique_ptr<Material> (*make)(std::vector<double> theta) = nullptr;
+  std::function<void(std::vector<double>& theta)> complete;
+  std::function<std::unique_ptr<Material>(std::vector<double> theta)> make;
   /// The response to steady shear (ill_posedness.hpp); null for a law without such a stress.
-  ShearResponse (*shear_response)(std::span<const double> theta, double p,
-                                  double gamma_dot) = nullptr;
+  std::function<ShearResponse(std::span<const double> theta, double p, double gamma_dot)>
+      shear_response;
   std::shared_ptr<const OutsideExtension> point;  ///< for the point driver; null: it has none
 };
 

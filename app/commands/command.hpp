@@ -11,6 +11,10 @@
 
 #include "io/exit_code.hpp"
 
+namespace repose::input {
+class InputFile;
+}
+
 namespace CLI {
 class App;
 }
@@ -84,6 +88,23 @@ struct Command {
   std::shared_ptr<const CommonOptions> options;
   std::function<io::ExitCode()> run;
 };
+
+// Verbs of an input that was opened already, its overrides applied; `from` says where it is from,
+// in words. With a [sweep] they are those of run_point_sweep() and run_scene_sweep(). They throw
+// BadInput, InputError and IoError as the command turns them into messages.
+io::ExitCode run_test(const std::string& from, const input::InputFile& given,
+                      const CommonOptions& options);
+io::ExitCode run_scene(const std::string& from, const input::InputFile& given,
+                       const CommonOptions& options);
+/// What `repose fit` takes beyond the common options.
+struct FitArguments {
+  int starts_from = 0;
+  int starts_to = -1;
+  std::vector<std::string> merge;
+  bool strict = false;
+};
+io::ExitCode run_fit(const input::InputFile& given, const FitArguments& arguments,
+                     const CommonOptions& options);
 
 Command add_run(CLI::App& root);
 Command add_check(CLI::App& root);

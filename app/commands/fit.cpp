@@ -21,26 +21,18 @@ namespace {
 
 using Json = io::Json;
 
-/// What `repose fit` takes beyond the common options.
-struct FitArguments {
-  std::string file;
-  int starts_from = 0;
-  int starts_to = -1;
-  std::vector<std::string> merge;
-  bool strict = false;
-};
-
 constexpr std::string_view journal_name = "starts.jsonl";
 
 class FitRun {
  public:
-  FitRun(const FitArguments& arguments, const CommonOptions& options)
+  FitRun(const input::InputFile& input, const FitArguments& arguments, const CommonOptions& options)
       : arguments_(arguments),
         options_(options),
-        output_(options.output.empty() ? io::ResultFolder::default_path(
-                                             std::filesystem::path(arguments.file).stem().string())
-                                       : std::filesystem::path(options.output)),
-        file_(input::read_fit(arguments.file, options.sets, options.seed, output_ / "runs")),
+        source_(input.name()),
+        output_(options.output.empty()
+                    ? io::ResultFolder::default_path(std::filesystem::path(source_).stem().string())
+                    : std::filesystem::path(options.output)),
+        file_(input::read_fit(input, options.seed, output_ / "runs")),
         problem_(calibration::ParameterSpace(file_.free), file_.targets, file_.balance),
         folder_(output_) {
     file_.options.starts_from = arguments.starts_from;
@@ -74,7 +66,7 @@ class FitRun {
     folder_.remove_old_outputs();
     folder_.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n# "
                                                  "From {}\n{}",
-                                                 version_string, arguments_.file, file_.resolved));
+                                                 version_string, source_, file_.resolved));
     for (const std::string& note : file_.notes)
       if (!options_.quiet) fmt::print(stderr, "note: {}\n", note);
 
@@ -84,29 +76,23 @@ class FitRun {
       threads.emplace(tbb::global_control::max_allowed_parallelism,
                       static_cast<std::size_t>(options_.threads));
     const io::InterruptGuard interrupt;
-    result_ =
-        study::search(file_, problem_,
-                      {std::move(done), !arguments_.merge.empty(),
-                       [&] { return interrupt.requested(); }, [&](const auto& s) { after(s); }});
+    const std::size_t told = file_.notes.size();
+    study::Solution solution =
+        study::solve(file_, problem_,
+                     {std::move(done), !arguments_.merge.empty(),
+                      [&] { return interrupt.requested(); }, [&](const auto& s) { after(s); }});
+    result_ = std::move(solution.result);
+    const std::string& status = solution.status;
+    const Json& report = solution.report;
+    const bool interrupted = status == "interrupted";
     if (!result_.coarse.empty()) tell_coarse_to_fine();
-    const bool interrupted = interrupt.requested();
     if (result_.starts.empty()) {
-      write_summary(interrupted ? "interrupted" : "failed", before, {});
-      fmt::print(stderr, "{}: no start came to an end\n", arguments_.file);
+      write_summary(status, before, {});
+      fmt::print(stderr, "{}: no start came to an end\n", source_);
       return interrupted ? io::ExitCode::interrupted : io::ExitCode::numerical_failure;
     }
-    if (!interrupted) calibration::settle_priors(problem_, file_.options, result_.starts);
-    if (interrupted) problem_.interrupt_by({});
-    study::analyse(file_, problem_, interrupted, result_);
-    for (const std::string& note : study::rows_beyond(file_, problem_, result_.best().z)) {
-      file_.notes.push_back(note);
-      if (!options_.quiet) fmt::print(stderr, "note: {}\n", note);
-    }
-    const std::string status = interrupted             ? "interrupted"
-                               : result_.best().failed ? "failed"
-                               : result_.converged     ? "done"
-                                                       : "not converged";
-    Json report = study::fit_report(file_, problem_, result_, status);
+    for (std::size_t k = told; k < file_.notes.size() && !options_.quiet; ++k)
+      fmt::print(stderr, "note: {}\n", file_.notes[k]);
     folder_.write_file("fit.json", report.dump(2) + "\n");
     folder_.write_file("fitted.toml", study::fitted_toml(file_, result_));
     folder_.write_file("predictions.csv", study::predictions_csv(file_, problem_, result_));
@@ -221,6 +207,7 @@ class FitRun {
 
   FitArguments arguments_;
   CommonOptions options_;
+  std::string source_;
   std::filesystem::path output_;
   input::FitFile file_;
   calibration::Problem problem_;
@@ -230,6 +217,11 @@ class FitRun {
 };
 
 }  // namespace
+
+io::ExitCode run_fit(const input::InputFile& input, const FitArguments& arguments,
+                     const CommonOptions& options) {
+  return FitRun(input, arguments, options).run();
+}
 
 Command add_fit(CLI::App& root) {
   Verb verb(root, "fit", "Fit a law's parameters to experiments");
@@ -244,9 +236,10 @@ Command add_fit(CLI::App& root) {
       "fit_diagnostics.svg, starts.jsonl, summary.json and input.toml.");
   const auto options = std::make_shared<CommonOptions>();
   options->seed = 1;
+  const auto file = std::make_shared<std::string>();
   const auto arguments = std::make_shared<FitArguments>();
   constexpr int most_starts = std::numeric_limits<int>::max();
-  verb.required("FIT.toml", arguments->file, "Fit file", "");
+  verb.required("FIT.toml", *file, "Fit file", "");
   add_run_options(verb, *options);
   verb.integer("--starts-from", arguments->starts_from, 0, most_starts, "First start of this share",
                "I");
@@ -254,7 +247,9 @@ Command add_fit(CLI::App& root) {
                "One past the last start of this share", "J");
   verb.flag("--strict", arguments->strict, "Exit with 3 if the fit is not converged");
   verb.option("--merge", arguments->merge, "Take the starts from these result folders", "DIR...");
-  return {verb.app(), options, [options, arguments] { return FitRun(*arguments, *options).run(); }};
+  return {verb.app(), options, [options, file, arguments] {
+            return run_fit(input::InputFile::read(*file, options->sets), *arguments, *options);
+          }};
 }
 
 }  // namespace repose::app

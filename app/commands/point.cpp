@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -7,15 +6,14 @@
 #include "app/commands/command.hpp"
 #include "app/commands/sweep.hpp"
 #include "input/file_kind.hpp"
-#include "input/read_law.hpp"
 #include "input/shipped_input.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
-#include "models/instruction_set.hpp"
 #include "report/picture/point_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
 #include "study/point/laboratory_record.hpp"
+#include "study/point/test_record.hpp"
 #include "study/point/test_result.hpp"
 #include "study/run/run_record.hpp"
 
@@ -24,47 +22,6 @@ namespace {
 
 using Json = io::Json;
 
-/// The input with what the command line changed and the defaults that numbers depend on.
-toml::table resolved(const input::InputFile& input, const input::PointTestFile& file) {
-  toml::table table = input.root();
-  if (!table.contains("law")) table.insert("law", toml::table{});
-  toml::table& law = *table["law"].as_table();
-  for (const auto& [key, text] : file.law.options) {
-    if (text == "true" || text == "false")
-      law.insert_or_assign(key, text == "true");
-    else
-      law.insert_or_assign(key, text);
-  }
-  for (const ParamInfo& parameter : find_law(file.law).parameters) {
-    const auto value = file.law.values.find(std::string(parameter.name));
-    if (value == file.law.values.end()) continue;
-    if (parameter.words.empty())
-      law.insert_or_assign(parameter.name, value->second);
-    else
-      law.insert_or_assign(parameter.name, input::word_of(parameter, value->second));
-    if (!parameter.angle.name.empty()) law.erase(parameter.angle.name);  // it has said its own
-  }
-  const point::Settings& settings = file.test.settings;
-  toml::table integration;
-  integration.insert(
-      "method",
-      std::string(point::name_of(point::method_for(find_law(file.law), settings.method))));
-  integration.insert("tolerance", settings.tolerance);
-  integration.insert("substeps", static_cast<std::int64_t>(settings.substeps));
-  integration.insert("max_steps", static_cast<std::int64_t>(settings.max_steps));
-  integration.insert("max_strain", settings.max_strain);
-  table.insert_or_assign("integration", integration);
-  // a result folder lies elsewhere than the file: relative tables are written in full
-  if (toml::table* test = table["test"].as_table(); test != nullptr && test->contains("history"))
-    if (const auto name = (*test)["history"].value<std::string>())
-      test->insert_or_assign(
-          "history",
-          std::filesystem::absolute(std::filesystem::path(input.name()).parent_path() / *name)
-              .lexically_normal()
-              .string());
-  return table;
-}
-
 std::string toml_text(const toml::table& table, const std::string& origin) {
   std::ostringstream text;
   text << "# The input of this result with its defaults, by repose " << version_string << ".\n# "
@@ -72,18 +29,6 @@ std::string toml_text(const toml::table& table, const std::string& origin) {
        << table << "\n";
   return std::move(text).str();
 }
-
-Json json_of(const toml::node& node) {
-  std::ostringstream text;
-  if (const auto* table = node.as_table())
-    text << toml::json_formatter{*table};
-  else if (const auto* list = node.as_array())
-    text << toml::json_formatter{*list};
-  return Json::parse(text.str());
-}
-
-/// A number for JSON: what is not finite becomes null.
-Json finite_or_null(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 class PointRun {
  public:
@@ -103,7 +48,7 @@ class PointRun {
                                       : std::filesystem::path(options_.output));
     const io::FolderClaim claim(folder);
     folder.remove_old_outputs();
-    const toml::table input = resolved(input_, file_);
+    const toml::table input = study::resolved_test(input_, file_);
     write(folder, "input.toml", toml_text(input, origin_));
     const study::Usage before = study::usage();
     result_ = study::drive(file_);
@@ -111,7 +56,8 @@ class PointRun {
     for (std::string& remark : study::remarks(file_, result_))
       file_.notes.push_back(std::move(remark));
     write(folder, "curve.csv", study::curve_csv(file_, result_));
-    const Json report = summary(input, result_.wall_s, after.cpu_s - before.cpu_s);
+    const Json report =
+        study::test_summary(file_, result_, input, after.cpu_s - before.cpu_s, options_.seed);
     write(folder, "summary.json", report.dump(2) + "\n");
     const bool drawn = draw(folder);
     if (!options_.quiet)
@@ -125,65 +71,6 @@ class PointRun {
   static void write(const io::ResultFolder& folder, std::string_view name,
                     const std::string& content) {
     folder.write_file(name, content, io::Outlives::kill);
-  }
-
-  std::vector<double> column(point::Quantity quantity) const {
-    std::vector<double> values;
-    point::read_column(*result_.law, result_.theta, file_.test, result_.curve, quantity, values);
-    return values;
-  }
-
-  Json summary(const toml::table& input, double wall, double cpu) const {
-    const point::Outcome& o = result_.curve.outcome;
-    Json s;
-    s["repose"] = version_string;
-    s["instruction_set"] = instruction_set();
-    s["kind"] = "point_test";
-    s["name"] = file_.name;
-    s["status"] = result_.failed() ? "failed" : "done";
-    s["reason"] = result_.reason;
-    s["fraction"] = o.fraction;
-    s["method"] = point::name_of(point::method_for(*result_.law, file_.test.settings.method));
-    s["tolerance"] = file_.test.settings.tolerance;
-    s["strain"] = point::name_of(file_.test.path.measure);
-    s["warnings"] = file_.notes;
-    s["rows"] = result_.curve.rows.size();
-    s["steps"] = o.counts.steps;
-    s["steps_rejected"] = o.counts.rejected;
-    s["rate_evaluations"] = o.counts.rates;
-    s["events"] = o.counts.events;
-    s["wall_s"] = wall;
-    s["cpu_s"] = cpu;
-    s["seed"] = options_.seed;
-    if (!result_.curve.rows.empty()) add_figures(s);
-    s["laboratory"] = study::laboratory_json(result_.figures);
-    s["input"] = json_of(input);
-    return s;
-  }
-
-  void add_figures(Json& s) const {
-    const auto& last = result_.curve.rows.back();
-    double residual = 0.0, scale = 0.0;
-    for (const auto& row : result_.curve.rows) {
-      residual = std::max(residual, row.residual);
-      scale = std::max({scale, std::abs(row.work), std::abs(row.stored)});
-    }
-    s["control_residual"] = residual;
-    Json energy;
-    energy["work_J_per_m3"] = finite_or_null(last.work);
-    energy["stored_J_per_m3"] = finite_or_null(last.stored);
-    energy["dissipated_J_per_m3"] = finite_or_null(last.dissipated);
-    energy["hypoelastic_J_per_m3"] = finite_or_null(last.hypoelastic);
-    const double error = last.work - last.stored - last.dissipated - last.hypoelastic;
-    energy["unaccounted_J_per_m3"] = finite_or_null(error);
-    energy["unaccounted_relative"] = finite_or_null(scale > 0.0 ? error / scale : 0.0);
-    s["energy"] = energy;
-    Json end;
-    for (const point::Quantity q : point::columns_of(*result_.law, file_.test))
-      end[std::string(point::column_name(q))] = finite_or_null(column(q).back());
-    s["end"] = end;
-    const auto q = column(point::Quantity::q);
-    s["q_max_Pa"] = finite_or_null(*std::max_element(q.begin(), q.end()));
   }
 
   /// Whether there is one. A picture that cannot be drawn is a warning, not a failure: the figures
@@ -227,23 +114,24 @@ class PointRun {
   study::TestResult result_;
 };
 
-io::ExitCode run_test(const std::string& path, const CommonOptions& options) {
-  input::InputFile input = input::open_test(path, options.sets);
-  input::require_kind(input, input::FileKind::point_test, "point");
+}  // namespace
+
+io::ExitCode run_test(const std::string& from, const input::InputFile& given,
+                      const CommonOptions& options) {
+  input::require_kind(given, input::FileKind::point_test, "point");
+  input::InputFile input = given;
   const std::optional<input::ParameterSets> sweep = input::read_sweep(input);
   if (sweep) {
     input.throw_if_bad();
-    return run_point_sweep(path, input, *sweep, options);
+    return run_point_sweep(from, given, *sweep, options);
   }
-  for (const auto& [given, option] :
+  for (const auto& [is_given, option] :
        {std::pair{options.resume, "--resume"}, {options.threads > 0, "--threads"}})
-    if (given)
+    if (is_given)
       throw input::BadInput(
-          {fmt::format("{} goes with a [sweep], and {} has none", option, input.name())});
-  return PointRun(path, std::move(input), options).run();
+          {fmt::format("{} goes with a [sweep], and {} has none", option, given.name())});
+  return PointRun(from, given, options).run();
 }
-
-}  // namespace
 
 Command add_point(CLI::App& root) {
   Verb verb(root, "point", "Drive one material point along a path");
@@ -265,7 +153,9 @@ Command add_point(CLI::App& root) {
   verb.flag("--resume", options->resume, "Go on with an interrupted [sweep]");
   add_no_plot(verb, *options);
   add_quiet(verb, *options);
-  return {verb.app(), options, [options, file] { return run_test(*file, *options); }};
+  return {verb.app(), options, [options, file] {
+            return run_test(*file, input::open_test(*file, options->sets), *options);
+          }};
 }
 
 }  // namespace repose::app

@@ -85,15 +85,22 @@ io::ExitCode run_file(const RunArguments& arguments) {
                                       {!arguments.runs.empty(), "--runs"}})
     if (given)
       throw input::BadInput({fmt::format("{} goes with --accuracy, which is missing", option)});
-  input::InputFile input = input::open_scene(path, options.sets);
-  input::require_kind(input, input::FileKind::scene, "run");
+  return run_scene(path, input::open_scene(path, options.sets), options);
+}
+
+}  // namespace
+
+io::ExitCode run_scene(const std::string& from, const input::InputFile& given,
+                       const CommonOptions& options) {
+  input::require_kind(given, input::FileKind::scene, "run");
+  input::InputFile input = given;
   if (const std::optional<input::ParameterSets> sweep = input::read_sweep(input)) {
     input.throw_if_bad();
-    return run_scene_sweep(path, input, *sweep, options);
+    return run_scene_sweep(from, given, *sweep, options);
   }
   study::RunRequest request;
   request.file = input::read_scene(input);
-  request.input = input::resolved_input(request.file, origin_line(path, options));
+  request.input = input::resolved_input(request.file, origin_line(from, options));
   request.folder = options.output.empty() ? io::ResultFolder::default_path(request.file.scene.name)
                                           : std::filesystem::path(options.output);
   request.threads = options.threads;
@@ -110,8 +117,6 @@ io::ExitCode run_file(const RunArguments& arguments) {
     throw;
   }
 }
-
-}  // namespace
 
 Command add_run(CLI::App& root) {
   Verb verb(root, "run", "Run a scene");

@@ -179,11 +179,10 @@ io::ExitCode run_point_sweep(const std::string& path, const input::InputFile& fi
                              const input::ParameterSets& sets, const CommonOptions& options) {
   const SweepFolder at(path, file, options);
   study::PointSweep sweep(
-      sets.keys,
-      cases_of<study::PointCase>(input::open_test(path, options.sets), sets,
-                                 [](study::PointCase& one, input::InputFile& run, std::size_t) {
-                                   one.test = input::read_point_test(run);
-                                 }));
+      sets.keys, cases_of<study::PointCase>(
+                     file, sets, [](study::PointCase& one, input::InputFile& run, std::size_t) {
+                       one.test = input::read_point_test(run);
+                     }));
   if (at.is_kept()) return io::ExitCode::done;
   const io::ExitCode code = sweep.run(at.folder(), options.threads, at.begin());
   at.folder().write_file("sweep.csv", sweep.table());
@@ -202,15 +201,14 @@ io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& fi
                              const input::ParameterSets& sets, const CommonOptions& options) {
   const SweepFolder at(path, file, options);
   study::SceneSweep sweep(
-      sets.keys, cases_of<study::SceneCase>(
-                     input::open_scene(path, options.sets), sets,
-                     [&](study::SceneCase& one, input::InputFile& run, std::size_t number) {
-                       const std::string name = study::SceneSweep::folder_name(number);
-                       one.file = input::read_scene(run);
-                       one.file->scene.name += "_" + name;
-                       one.input = input::resolved_input(*one.file,
-                                                         fmt::format("Run {} of {}", name, path));
-                     }));
+      sets.keys,
+      cases_of<study::SceneCase>(
+          file, sets, [&](study::SceneCase& one, input::InputFile& run, std::size_t number) {
+            const std::string name = study::SceneSweep::folder_name(number);
+            one.file = input::read_scene(run);
+            one.file->scene.name += "_" + name;
+            one.input = input::resolved_input(*one.file, fmt::format("Run {} of {}", name, path));
+          }));
   if (at.is_kept()) return io::ExitCode::done;
   const auto tell = [&](std::size_t run) {
     const study::RunSummary& summary = sweep.cases()[run - 1].summary;

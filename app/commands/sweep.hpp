@@ -9,7 +9,8 @@
 
 namespace repose::app {
 
-/// Drives every test, or runs every scene, of the sweep. path: as the command line has it.
+/// Drives every test, or runs every scene, of the sweep. path: as the command line has it; file: as
+/// it was opened, before anything was read of it.
 io::ExitCode run_point_sweep(const std::string& path, const input::InputFile& file,
                              const input::ParameterSets& sets, const CommonOptions& options);
 io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& file,

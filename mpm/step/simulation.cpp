@@ -1,7 +1,6 @@
 #include "mpm/step/simulation.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 #include <fmt/core.h>
 #include <tbb/info.h>
@@ -11,12 +10,6 @@
 
 namespace repose::mpm {
 namespace {
-
-template <int dim>
-std::array<double, dim> gravity_vector(const Scene& scene) {
-  const double angle = scene.tilt_deg * std::numbers::pi / 180.0;
-  return {scene.gravity * std::sin(angle), -scene.gravity * std::cos(angle)};
-}
 
 /// Velocity, gradient and affine velocity of points that have just been filled.
 void set_motion(PointSet& points, const std::function<PointMotion(double, double)>& motion) {
@@ -43,7 +36,7 @@ std::array<int, dim> cells(const Scene& scene) {
 template <int dim>
 Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, int thread_count)
     : scene(given),
-      gravity(gravity_vector<dim>(given)),
+      gravity(gravity_of<dim>(given)),
       walls{given.left, given.right, given.floor, given.top, given.near, given.far},
       grid(given.h, cells<dim>(given)),
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
@@ -85,20 +78,23 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
   ledger.start_elastic = e.elastic;
   ledger.kinetic = e.kinetic;
   ledger.power = initial_power();
-  // all that could ever become motion: every point in the lowest corner of the box, unstressed; and
-  // the round-off of its wave energy where there is nothing else
+  highest_energy = energy_bound();
+}
+
+template <int dim>
+double Simulation::Impl<dim>::energy_bound() const {
+  // the work of these has no bound
+  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
+  if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
+      drags(walls.right) || drags(walls.floor) || drags(walls.top))
+    return HUGE_VAL;
   const double lowest = std::min({0.0, -gravity[0] * scene.domain[0], -gravity[1] * scene.domain[1],
                                   -gravity[0] * scene.domain[0] - gravity[1] * scene.domain[1]});
   double mass = 0.0;
   for (const PointsOf<dim>& points : bodies)
     for (std::size_t s = 0; s < points.slots(); ++s)
       if (points.id[s] >= 0) mass += points[Layout<dim>::mass][s];
-  highest_energy = ledger.start - mass * lowest + 1e-9 * mass * signals.signal * signals.signal;
-  // the work of these has no bound
-  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
-  if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
-      drags(walls.right) || drags(walls.floor) || drags(walls.top))
-    highest_energy = HUGE_VAL;
+  return ledger.start - mass * lowest + 1e-9 * mass * signals.signal * signals.signal;
 }
 
 template <int dim>
@@ -182,6 +178,8 @@ Simulation::Counters Simulation::counters() const {
   return visit([](const auto& s) { return s.counters(); });
 }
 
+template double Simulation::Impl<2>::energy_bound() const;
+template double Simulation::Impl<3>::energy_bound() const;
 template Simulation::Impl<2>::Impl(const Scene&, const Prescribed&, int);
 template Simulation::Impl<3>::Impl(const Scene&, const Prescribed&, int);
 

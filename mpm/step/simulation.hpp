@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include "io/frame_writer.hpp"
 #include "mpm/grid/numerical_failure.hpp"
@@ -110,6 +111,40 @@ class Simulation {
     Snapshot slice(double from, double to) const;
   };
   Snapshot snapshot(Stress of = Stress::points) const;
+
+  /// Everything that the points carry, in the order of their creation: row by row, `dimensions`
+  /// numbers of a vector, the components of Sym (models/sym.hpp) of a stress.
+  struct PointFields {
+    std::size_t dimensions = 2, components = 4;
+    std::size_t state_width = 0;  ///< most state variables of a body's law
+    std::vector<std::int64_t> id;
+    std::vector<std::int32_t> body;
+    std::vector<double> position, velocity;  ///< [m], [m/s]
+    std::vector<double> velocity_gradient;   ///< L_ij = dv_i/dx_j, row by row [1/s]
+    std::vector<double> stress;              ///< the point's own, tension positive [Pa]
+    std::vector<double> density, mass;       ///< [kg/m³], [kg/m] (in space [kg])
+    /// Variables of the law of the point's body, in table order; NaN beyond those that it has
+    std::vector<double> state;
+  };
+  PointFields point_fields() const;
+
+  /// The nodes of the box in the last step, x slowest: mass with what lies behind the walls
+  /// folded in, and velocity after forces and walls. Zero where no point is near, and before the
+  /// first step.
+  struct NodeFields {
+    std::vector<std::size_t> nodes;  ///< along each axis
+    std::vector<double> mass;        ///< [kg/m], in space [kg]
+    std::vector<double> velocity;    ///< [m/s]
+  };
+  NodeFields node_fields() const;
+
+  /// Goes on under another gravity, as Scene::gravity and tilt_deg [m/s²], [°]. The potential
+  /// energy that this gives to the points counts as there from the start, so that the ledger still
+  /// closes; a relaxation time that followed from gravity stays what it was. Throws InputError.
+  void set_gravity(double gravity, double tilt_deg);
+  /// Goes on with another edge: "floor", "left", "right", "top", in space "near" and "far". Edges
+  /// do not become periodic or cease to be. Throws InputError, with the edges there are.
+  void set_wall(std::string_view edge, const Wall& wall);
 
   /// Things a user should know: a fixed step beyond a stability limit, wall corrections, ...
   std::vector<std::string> warnings() const;

@@ -2,6 +2,8 @@
 /// \file
 /// The state of a simulation and the stages of its step, in the plane or in space. Private to mpm/.
 
+#include <numbers>
+
 #include <tbb/task_arena.h>
 
 #include "mpm/boundary/periodic.hpp"
@@ -14,6 +16,13 @@
 #include "mpm/step/transfer.hpp"
 
 namespace repose::mpm {
+
+/// g (sin, −cos) of a scene, with nothing along z [m/s²].
+template <int dim>
+std::array<double, dim> gravity_of(const Scene& scene) {
+  const double angle = scene.tilt_deg * std::numbers::pi / 180.0;
+  return {scene.gravity * std::sin(angle), -scene.gravity * std::cos(angle)};
+}
 
 /// What the tiles' last channel carries.
 enum class Extra : std::uint8_t { nothing, elastic, signal };
@@ -40,6 +49,10 @@ class Simulation::Impl {
   Deposit deposit() const;
   std::int64_t live_cells() const;
   Snapshot snapshot() const;
+  PointFields point_fields() const;
+  NodeFields node_fields();
+  void set_gravity(double gravity, double tilt_deg);
+  void set_wall(std::string_view edge, const Wall& wall);
   std::vector<std::string> warnings() const;
   Counters counters() const;
   void save(const std::filesystem::path& file) const;
@@ -50,6 +63,10 @@ class Simulation::Impl {
   };
   Energies energies();
   Signals initial_signals() const;
+  /// All that could ever become motion: every point in the lowest corner of the box, unstressed,
+  /// and the round-off of its wave energy where there is nothing else. HUGE_VAL where something
+  /// works on the points without bound.
+  double energy_bound() const;
   /// The signals as the grid sees them.
   Signals seen() const {
     return {signals.speed, node_share * signals.signal, signals.viscous_rate};

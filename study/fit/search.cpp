@@ -109,4 +109,28 @@ std::vector<std::string> rows_beyond(const input::FitFile& file,
   return notes;
 }
 
+Solution solve(input::FitFile& file, calibration::Problem& problem, const SearchRequest& request) {
+  Solution solution;
+  FitResult& result = solution.result;
+  result = search(file, problem, request);
+  const bool interrupted = request.interrupted && request.interrupted();
+  if (result.starts.empty()) {
+    solution.status = interrupted ? "interrupted" : "failed";
+    return solution;
+  }
+  if (interrupted)
+    problem.interrupt_by({});
+  else
+    calibration::settle_priors(problem, file.options, result.starts);
+  analyse(file, problem, interrupted, result);
+  for (std::string& note : rows_beyond(file, problem, result.best().z))
+    file.notes.push_back(std::move(note));
+  solution.status = interrupted            ? "interrupted"
+                    : result.best().failed ? "failed"
+                    : result.converged     ? "done"
+                                           : "not converged";
+  solution.report = fit_report(file, problem, result, solution.status);
+  return solution;
+}
+
 }  // namespace repose::study

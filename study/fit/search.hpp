@@ -28,6 +28,18 @@ FitResult search(const input::FitFile& file, calibration::Problem& problem, Sear
 void analyse(input::FitFile& file, const calibration::Problem& problem, bool brief,
              FitResult& result);
 
+/// What a fit comes to.
+struct Solution {
+  FitResult result;
+  /// "done", "not converged", "failed" or "interrupted"
+  std::string status;
+  io::Json report;  ///< fit_report(); null where no start came to an end
+};
+
+/// search(), settled priors, analyse() (briefly if it was interrupted) and rows_beyond(), which it
+/// notes in the file.
+Solution solve(input::FitFile& file, calibration::Problem& problem, const SearchRequest& request);
+
 /// A note for every target some of whose rows the curve at z does not reach.
 std::vector<std::string> rows_beyond(const input::FitFile& file,
                                      const calibration::Problem& problem, const Eigen::VectorXd& z);

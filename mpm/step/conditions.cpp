@@ -1,0 +1,83 @@
+/// What may change while a simulation goes on: gravity and the walls.
+
+#include <fmt/format.h>
+
+#include "mpm/step/simulation_impl.hpp"
+
+namespace repose::mpm {
+namespace {
+
+struct Edge {
+  std::string_view name;
+  Wall Scene::*of_scene;
+  Wall Walls::*of_walls;
+};
+constexpr std::array<Edge, 6> edges{
+    Edge{"floor", &Scene::floor, &Walls::floor}, Edge{"left", &Scene::left, &Walls::left},
+    Edge{"right", &Scene::right, &Walls::right}, Edge{"top", &Scene::top, &Walls::top},
+    Edge{"near", &Scene::near, &Walls::near},    Edge{"far", &Scene::far, &Walls::far}};
+
+}  // namespace
+
+template <int dim>
+void Simulation::Impl<dim>::set_gravity(double magnitude, double tilt_deg) {
+  Scene changed = scene;
+  if (changed.transfer == Transfer::relaxed && !changed.relaxation_time)
+    changed.relaxation_time = default_relaxation_time(scene);
+  changed.gravity = magnitude;
+  changed.tilt_deg = tilt_deg;
+  if (!(magnitude >= 0.0) || !std::isfinite(magnitude))
+    throw InputError("scene.gravity",
+                     fmt::format("gravity = {} m/s2 must be a number >= 0", magnitude));
+  if (!(std::abs(tilt_deg) <= 90.0))
+    throw InputError("scene.tilt_deg", fmt::format("tilt_deg = {} must be in [-90, 90]", tilt_deg));
+  validate(changed);
+  const std::array<double, dim> before = gravity;
+  const double potential = energies().potential;
+  scene = changed;
+  gravity = gravity_of<dim>(scene);
+  ledger.start += energies().potential - potential;
+  for (const PointsOf<dim>& points : bodies)
+    for (std::size_t s = 0; s < points.slots(); ++s) {
+      if (points.id[s] < 0) continue;
+      for (std::size_t i = 0; i < dim; ++i)
+        ledger.power +=
+            points[Layout<dim>::mass][s] * (gravity[i] - before[i]) * points[Layout<dim>::v + i][s];
+    }
+  highest_energy = std::max(highest_energy, energy_bound());
+}
+
+template <int dim>
+void Simulation::Impl<dim>::set_wall(std::string_view name, const Wall& wall) {
+  const std::size_t there = dim == 2 ? 4 : 6;
+  const auto* const edge = std::find_if(edges.begin(), edges.begin() + there,
+                                        [&](const Edge& e) { return e.name == name; });
+  if (edge == edges.begin() + there) {
+    std::vector<std::string_view> names;
+    for (std::size_t k = 0; k < there; ++k) names.push_back(edges[k].name);
+    const std::string near = nearest_name(name, names);
+    throw InputError("domain",
+                     fmt::format("there is no edge '{}': {}{}", name, fmt::join(names, ", "),
+                                 near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  const auto periodic = [](const Wall& w) { return w.kind == Wall::Kind::periodic; };
+  if (periodic(scene.*(edge->of_scene)) != periodic(wall))
+    throw InputError(
+        fmt::format("domain.{}", name),
+        "an edge does not become periodic, or cease to be, while a simulation goes on");
+  Scene changed = scene;
+  changed.*(edge->of_scene) = wall;
+  validate(changed);
+  scene = changed;
+  walls.*(edge->of_walls) = wall;
+  highest_energy = std::max(highest_energy, energy_bound());
+}
+
+void Simulation::set_gravity(double gravity, double tilt_deg) {
+  visit([&](auto& s) { s.set_gravity(gravity, tilt_deg); });
+}
+void Simulation::set_wall(std::string_view edge, const Wall& wall) {
+  visit([&](auto& s) { s.set_wall(edge, wall); });
+}
+
+}  // namespace repose::mpm
