@@ -4,6 +4,7 @@
 /// those that another program registers. all_laws.hpp has the types of the library's.
 
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
@@ -93,8 +94,8 @@ class OutsideExtension {
 /// A form of a law that another program brings along. register_law.hpp makes it of a law's type.
 struct OutsideLaw {
   const LawInfo* info = nullptr;  ///< lives until the program ends
-  void (*complete)(std::vector<double>& theta) = nullptr;
-  std::unique_ptr<Material> (*make)(std::vector<double> theta) = nullptr;
+  std::function<void(std::vector<double>& theta)> complete;
+  std::function<std::unique_ptr<Material>(std::vector<double> theta)> make;
   /// The response to steady shear (ill_posedness.hpp); null for a law without such a stress.
   ShearResponse (*shear_response)(std::span<const double> theta, double p,
                                   double gamma_dot) = nullptr;
@@ -105,8 +106,13 @@ struct OutsideLaw {
 /// is the one that applies if the option is left out. From any thread, at any time. Throws
 /// InputError (key "name"), and registers nothing, where the name is empty or taken, the forms
 /// differ in name or option_key or agree in their option, a table names something twice or there
-/// are more than four state variables.
+/// are more than most_state_variables (material.hpp) state variables.
 void register_law(const std::vector<OutsideLaw>& forms);
+
+/// Adds a form to a law from outside, or registers it as the first. For laws whose forms come with
+/// the input that names them (umat/in). Throws as register_law() does; nothing changes where the
+/// option is known already, so the first form of an option stays.
+void register_form(const OutsideLaw& form);
 
 /// The form from outside that belongs to `law`; null for a law of the library's own. Throws
 /// InputError (key "name") for one that is neither: it was never registered.
