@@ -23,8 +23,8 @@ std::string number(double x) {
 }
 
 /// One word per way to fail, by which failed trials are counted.
-std::string_view word(Status status) {
-  switch (status) {
+std::string_view word(const point::Outcome& outcome) {
+  switch (outcome.status) {
     case Status::completed:
       return "";
     case Status::stopped:
@@ -49,6 +49,8 @@ std::string_view word(Status status) {
       return "bad_initial";
     case Status::unsupported:
       return "unsupported";
+    case Status::law_failed:
+      return outcome.fault.empty() ? "law_failed" : outcome.fault;
   }
   return "unknown";
 }
@@ -164,7 +166,7 @@ class PointSimulator final : public Simulator {
   void fill(const point::Outcome& outcome, const Scratch& scratch, Index wanted,
             Response& r) const {
     const bool complete = outcome.status == Status::completed;
-    r.reason = complete ? "" : word(outcome.status);
+    r.reason = complete ? "" : word(outcome);
     r.finished = complete ? 1.0 : outcome.fraction;
     const auto& columns = scratch.columns;
     const auto channels = static_cast<Index>(e_.y.size());

@@ -12,6 +12,10 @@
 
 namespace repose {
 
+/// Room for the state variables of a law: those of the library need no more than four, a foreign one
+/// (umat/in) brings its own.
+inline constexpr std::size_t most_state_variables = 64;
+
 /// A run of material points with N tensor components (sym.hpp). Every array has room for
 /// padded(count) entries (padding.hpp), and the entries behind `count` hold copies of valid points.
 template <int N>
@@ -25,7 +29,8 @@ struct BatchOf {
   std::array<const double*, N == 4 ? 1 : 3> spin{};
   double* density = nullptr;  ///< in: at the start of the step; out: its end [kg/m³]
   std::array<double*, components> stress{};  ///< Cauchy, tension positive [Pa]; updated in place
-  std::array<double*, 4> state{};            ///< state variables in table order; updated in place
+  /// State variables in table order; updated in place
+  std::array<double*, most_state_variables> state{};
   double* modulus = nullptr;                 ///< out, optional: ρc² [Pa]
   double* viscosity = nullptr;  ///< out, optional: shear viscosity limiting the step [Pa s]
   double* work = nullptr;  ///< out, optional: ½(σ_n + σ_{n+1}):Δε, energy per mean volume [J/m³]
@@ -55,6 +60,7 @@ struct LawInfo {
 struct UpdateReport {
   static constexpr std::size_t none = static_cast<std::size_t>(-1);
   std::size_t failed = none;
+  std::string reason{};  ///< what the law itself says of it; empty where the numbers say all
   bool ok() const { return failed == none; }
 };
 

@@ -1,5 +1,6 @@
 /// The laws that other programs have registered.
 #include <algorithm>
+#include <deque>
 #include <mutex>
 #include <set>
 
@@ -7,8 +8,6 @@
 
 namespace repose {
 namespace {
-
-constexpr std::size_t most_state_variables = std::tuple_size_v<decltype(Batch::state)>;
 
 /// Nothing that was registered is ever changed or given up, so a reader holds the lock no longer
 /// than it takes to copy a pointer.
@@ -26,23 +25,38 @@ class Registry {
 
   const OutsideLaw* find(const LawInfo& law) const {
     const std::lock_guard lock(mutex_);
+    return find_locked(law);
+  }
+
+  /// False if the name is taken.
+  bool add(const std::vector<OutsideLaw>& forms) {
+    const std::lock_guard lock(mutex_);
+    if (laws_.contains(forms.front().info->name)) return false;
+    laws_.emplace(forms.front().info->name, Forms(forms.begin(), forms.end()));
+    list_ = listed();
+    return true;
+  }
+
+  /// A further form of a law that may be new.
+  void add_form(const OutsideLaw& form) {
+    const std::lock_guard lock(mutex_);
+    if (find_locked(*form.info) != nullptr) return;
+    laws_[std::string(form.info->name)].push_back(form);
+    list_ = listed();
+  }
+
+ private:
+  using Forms = std::deque<OutsideLaw>;  // what find() gave stays where it is
+
+  Registry() : list_(listed()) {}
+
+  const OutsideLaw* find_locked(const LawInfo& law) const {
     const auto found = laws_.find(law.name);
     if (found == laws_.end()) return nullptr;
     for (const OutsideLaw& form : found->second)
       if (form.info->option == law.option) return &form;
     return nullptr;
   }
-
-  /// False if the name is taken.
-  bool add(const std::vector<OutsideLaw>& forms) {
-    const std::lock_guard lock(mutex_);
-    if (!laws_.emplace(forms.front().info->name, forms).second) return false;
-    list_ = listed();
-    return true;
-  }
-
- private:
-  Registry() : list_(listed()) {}
 
   std::shared_ptr<const std::vector<const LawInfo*>> listed() const {
     auto list = std::make_shared<std::vector<const LawInfo*>>();
@@ -53,7 +67,7 @@ class Registry {
   }
 
   mutable std::mutex mutex_;
-  std::map<std::string, std::vector<OutsideLaw>, std::less<>> laws_;
+  std::map<std::string, Forms, std::less<>> laws_;
   std::shared_ptr<const std::vector<const LawInfo*>> list_;
 };
 
@@ -88,10 +102,13 @@ const OutsideLaw* find_outside(const LawInfo& law) {
                                "\" is unknown: it was never registered (register_law.hpp)");
 }
 
-void register_law(const std::vector<OutsideLaw>& forms) {
+namespace {
+
+/// Throws InputError where the forms are not those of one law.
+void check_forms(const std::vector<OutsideLaw>& forms) {
   if (forms.empty()) throw InputError("name", "register_law: no form of a law was given");
   const auto complete = [](const OutsideLaw& form) {
-    return form.info != nullptr && form.complete != nullptr && form.make != nullptr;
+    return form.info != nullptr && form.complete && form.make;
   };
   if (!std::all_of(forms.begin(), forms.end(), complete))
     throw InputError("name", "register_law: a form needs info, complete and make");
@@ -125,8 +142,21 @@ void register_law(const std::vector<OutsideLaw>& forms) {
   if (std::any_of(library.begin(), library.end(),
                   [&](const LawInfo& info) { return info.name == name; }))
     fail("is one of the library's own: take another name");
+}
+
+}  // namespace
+
+void register_law(const std::vector<OutsideLaw>& forms) {
+  check_forms(forms);
   if (!Registry::instance().add(forms))
-    fail("is registered already: a name stands for one law as long as the program runs");
+    throw InputError("name", "register_law: the law \"" + std::string(forms.front().info->name) +
+                                 "\" is registered already: a name stands for one law as long as "
+                                 "the program runs");
+}
+
+void register_form(const OutsideLaw& form) {
+  check_forms({form});
+  Registry::instance().add_form(form);
 }
 
 }  // namespace repose

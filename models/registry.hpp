@@ -106,8 +106,13 @@ struct OutsideLaw {
 /// is the one that applies if the option is left out. From any thread, at any time. Throws
 /// InputError (key "name"), and registers nothing, where the name is empty or taken, the forms
 /// differ in name or option_key or agree in their option, a table names something twice or there
-/// are more than four state variables.
+/// are more than most_state_variables (material.hpp) state variables.
 void register_law(const std::vector<OutsideLaw>& forms);
+
+/// Adds a form to a law from outside, or registers it as the first. For laws whose forms come with
+/// the input that names them (umat/in). Throws as register_law() does; nothing changes where the
+/// option is known already, so the first form of an option stays.
+void register_form(const OutsideLaw& form);
 
 /// The form from outside that belongs to `law`; null for a law of the library's own. Throws
 /// InputError (key "name") for one that is neither: it was never registered.

@@ -32,7 +32,7 @@ enum Field : std::size_t {
   MASS,   ///< per metre of depth [kg/m]
   STATE,  ///< first state variable of the law
 };
-constexpr std::size_t max_state = 4;
+constexpr std::size_t max_state = most_state_variables;
 constexpr std::size_t affine_fields = 4;
 constexpr std::size_t split_fields = 2;  ///< of a stress that is split (implicit_viscosity.hpp)
 

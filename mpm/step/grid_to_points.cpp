@@ -214,8 +214,9 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
     const std::size_t k = report.failed;
     sums.failure = fmt::format(
         "the stress of {} could not be updated for the strain increment xx {:.6g}, yy {:.6g}, xy "
-        "{:.6g} in {:.3g} s",
-        describe(points, body, range.begin + k), e[0][k], e[1][k], e[3][k], dt);
+        "{:.6g} in {:.3g} s{}",
+        describe(points, body, range.begin + k), e[0][k], e[1][k], e[3][k], dt,
+        report.reason.empty() ? "" : ": " + report.reason);
   }
   if constexpr (dim == 2) {
     if (points.splits_stress()) split_stress(points, range, batch);

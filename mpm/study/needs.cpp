@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "models/registry.hpp"
 #include "mpm/step/simulation_impl.hpp"
 
 namespace repose::mpm {
@@ -43,7 +44,7 @@ Needs needs_in(const Scene& scene) {
     const double field_bytes =
         scene.storage == Storage::single_precision ? sizeof(float) : sizeof(double);
     const double fields = static_cast<double>(
-        Layout<dim>::state + max_state +
+        Layout<dim>::state + std::max(std::size_t{4}, find_law(body.law).state.size()) +
         (body.restitution ? PointsOf<dim>::force_components : std::size_t{0}) +
         (scene.transfer == Transfer::relaxed ? Layout<dim>::gradient : std::size_t{0}));
     slots_bytes += slots * (fields * field_bytes + sizeof(std::int64_t));

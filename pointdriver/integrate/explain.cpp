@@ -64,6 +64,8 @@ std::string why(const LawInfo& law, std::span<const double> theta, const PointTe
     case Status::unsupported:
       return "method \"" + std::string(name_of(test.settings.method)) +
              "\" cannot treat a law whose stress follows the strain rate at once; use implicit";
+    case Status::law_failed:
+      return curve.said;
     case Status::bad_initial:
       try {
         check_start(law, theta, test);
@@ -102,7 +104,9 @@ std::string explain(const LawInfo& law, std::span<const double> theta, const Poi
   if (outcome.status == Status::completed || outcome.status == Status::bad_initial ||
       outcome.status == Status::unsupported)
     return text;
-  if (std::string told = beyond_strength(law, theta, test, curve); !told.empty())
+  if (outcome.status == Status::law_failed) {
+    // nothing to find out about strength
+  } else if (std::string told = beyond_strength(law, theta, test, curve); !told.empty())
     text = std::move(told);
   const Leg& leg = test.path.legs[static_cast<std::size_t>(outcome.leg)];
   return leg.spec().name + ": " + text + "; at " + place(law, theta, test, curve) + " (stage " +

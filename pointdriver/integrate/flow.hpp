@@ -28,7 +28,7 @@ std::array<T, max_state> variables(const typename L::template Params<T>& P,
                                    const std::array<T, n>& y) {
   constexpr std::size_t m = L::state.size();
   std::array<T, max_state> all{};
-  for (std::size_t i = 0; i < m; ++i) all[i] = y[6 + i];
+  for (std::size_t i = 0; i < std::min(m, max_state); ++i) all[i] = y[6 + i];
   if constexpr (!derived_fields<L>().empty()) {
     Sym<T, 6> stress;
     for (std::size_t i = 0; i < 6; ++i) stress.c[i] = y[i];
@@ -57,7 +57,7 @@ class Flow {
   static constexpr std::size_t i_work = i_strain + 6;
   static constexpr std::size_t size = i_work + 3;
   using Y = std::array<T, size>;
-  static_assert(m + derived_fields<L>().size() <= max_state);
+  static_assert(m + derived_fields<L>().size() <= max_state || derived_fields<L>().empty());
 
   Flow(const Parameters& P, const T& density_0, bool energy)
       : P_(P),

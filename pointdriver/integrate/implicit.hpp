@@ -16,6 +16,25 @@
 
 namespace repose::point {
 
+/// How well the stress rows are met, relative: Newton goes on to `goal`, and takes what is no larger
+/// than `enough` where round-off, or the noise of an update that cuts its own steps, lets it come no
+/// closer. A law may have its own: `control_goal`, `control_enough`.
+template <class L>
+struct ControlTolerance {
+  static constexpr double goal = [] {
+    if constexpr (requires { L::control_goal; })
+      return L::control_goal;
+    else
+      return 1e-15;
+  }();
+  static constexpr double enough = [] {
+    if constexpr (requires { L::control_enough; })
+      return L::control_enough;
+    else
+      return 1e-12;
+  }();
+};
+
 template <class L, class T>
 class Implicit {
  public:
@@ -28,6 +47,7 @@ class Implicit {
 
   LegEnd<T> drive(Run& run, Y& y) {
     T t(0.0);
+    if constexpr (may_break) L::begin_leg(run.flow().parameters());
     const int points = run.spec().points;
     const int count = points * std::max(1, settings_.substeps);
     const double nominal = value(run.duration()) / count;
@@ -47,6 +67,8 @@ class Implicit {
           }
           converged = false;  // somewhere on the way to the event
         }
+        if constexpr (may_break)
+          if (!converged && L::broken(run.flow().parameters())) return {Status::law_failed, t, -1};
         if (!converged) {
           ++counts_.rejected;
           if (++cut > 30) return {Status::not_converged, t, -1};
@@ -77,6 +99,10 @@ class Implicit {
 
  private:
   using Unknowns = std::array<double, 6>;
+  /// A law whose update may break down for good, where no smaller step helps (a foreign one).
+  static constexpr bool may_break = requires(const typename L::template Params<T>& P) {
+    L::broken(P);
+  };
 
   /// Newton starts from the rates at the leg's start (a law at rest has no tangent: it keeps its
   /// stress); later from those of the step before.
@@ -169,7 +195,7 @@ class Implicit {
         }
       }
       if (!(size < best) && iteration > 0) {
-        if (best < 1e-12) {  // round-off reached one step before
+        if (best < ControlTolerance<L>::enough) {  // round-off reached one step before
           zeta = last;
           return true;
         }
@@ -191,12 +217,12 @@ class Implicit {
         for (int j = 0; j < k; ++j) J[at(i)][at(j)] = r[at(i)].v[j];
       }
       jacobian_ = J;
-      if (size < 1e-15) return true;
+      if (size < ControlTolerance<L>::goal) return true;
       if (!solve_small(k, J, step)) return false;
       move = step;
       for (int j = 0; j < k; ++j) zeta[at(j)] -= move[at(j)];
     }
-    return best < 1e-12;
+    return best < ControlTolerance<L>::enough;
   }
 
   /// The update over D_p dt + Σ ζ_j N_j, in any scalar.
@@ -268,12 +294,17 @@ class Implicit {
   /// Parameters as constants of another scalar type.
   template <class S>
   static typename L::template Params<S> lifted(const typename L::template Params<double>& P) {
-    constexpr std::size_t count = sizeof(P) / sizeof(double);
-    static_assert(count == L::parameters.size(), "Params<T> holds the parameters and nothing else");
-    const auto plain = std::bit_cast<std::array<double, count>>(P);
-    std::array<S, count> wide;
-    for (std::size_t i = 0; i < count; ++i) wide[i] = S(plain[i]);
-    return L::template Params<S>::from(std::span<const S>(wide));
+    if constexpr (requires { L::template lifted<S>(P); }) {
+      return L::template lifted<S>(P);
+    } else {
+      constexpr std::size_t count = sizeof(P) / sizeof(double);
+      static_assert(count == L::parameters.size(),
+                    "Params<T> holds the parameters and nothing else");
+      const auto plain = std::bit_cast<std::array<double, count>>(P);
+      std::array<S, count> wide;
+      for (std::size_t i = 0; i < count; ++i) wide[i] = S(plain[i]);
+      return L::template Params<S>::from(std::span<const S>(wide));
+    }
   }
 
   /// Work by the trapezoidal rule, and what the law's update says of it, over the volume half way.

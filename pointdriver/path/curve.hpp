@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,7 +15,9 @@
 
 namespace repose::point {
 
-inline constexpr std::size_t max_state = 4;  ///< variables of a law: state, then derived
+/// Variables of a law that a row carries: state, then derived; of a foreign law with more state the
+/// first.
+inline constexpr std::size_t max_state = 4;
 
 /// The element at one instant. Tensors tension positive; strains logarithmic, zero at the start.
 template <class T>
@@ -38,6 +41,7 @@ template <class T>
 struct BasicCurve {
   std::vector<Row<T>> rows;
   Outcome outcome;
+  std::string said;  ///< what the law says of its own failure (Status::law_failed)
 };
 using Curve = BasicCurve<double>;
 

@@ -24,6 +24,7 @@ struct Settings {
   long max_steps = 1000000;  ///< per leg
   double max_strain = 10.0;  ///< a path beyond this has run away
   bool energy = true;        ///< integrate work and dissipation along
+  bool check_tangent = false;  ///< of a foreign law: count the steps whose tangent is off (Counts)
 };
 
 }  // namespace repose::point

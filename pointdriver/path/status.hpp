@@ -4,6 +4,7 @@
 /// are made from it on demand (report.hpp).
 
 #include <cstdint>
+#include <string_view>
 
 namespace repose::point {
 
@@ -20,6 +21,7 @@ enum class Status : std::uint8_t {
   not_finite,      ///< the law returned no finite number
   bad_initial,     ///< the law cannot start from the initial conditions with these parameters
   unsupported,     ///< this integrator cannot treat this law
+  law_failed,      ///< the law itself broke down (a foreign one: Outcome::fault)
 };
 
 constexpr bool is_failure(Status status) {
@@ -33,6 +35,9 @@ struct Counts {
   long rates = 0;     ///< right-hand sides (solutions of the control equations)
   long updates = 0;   ///< stress updates (implicit)
   long events = 0;    ///< located changes of branch, goals and stops
+  /// Steps whose tangent was compared with differences of the update, and those where it was off by
+  /// more than a tenth: foreign laws, where Settings::check_tangent asks for it
+  long tangents_checked = 0, tangents_off = 0;
 };
 
 struct Outcome {
@@ -41,6 +46,7 @@ struct Outcome {
   double time = 0.0;      ///< test time at the end [s]
   int leg = 0;            ///< the leg in which it ended
   int stop = -1;          ///< which stop condition of that leg, if stopped
+  std::string_view fault{};  ///< if law_failed: how, in a word of static text ("umat_crashed")
   Counts counts;
 };
 
