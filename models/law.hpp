@@ -100,7 +100,8 @@ void reject_unused(std::string_view law, const InitialConditions& given, bool ta
 ///   parameters, state                constexpr tables
 ///   complete(theta)                  derives absent optional values, checks conditions between
 ///                                    parameters (κ < λ); throws InputError
-///   Params<T>::from(span<T>)         parameter vector → named values
+///   Params<T>::from(span<T>)         parameter vector → named values: those of the table in its
+///                                    order, and nothing else
 ///   State<T>                         state variables, convertible to and from an array
 ///   update(P, increment, σ, state, spent)  advances one step in place; returns the mask of points
 ///                                    that could not be integrated (they are left as they were).

@@ -33,11 +33,11 @@ struct NeoHookean {
 
   template <class T>
   struct Params {
-    T lambda, mu, rho_0;  // Lamé's
-    static Params from(std::span<const T> t) {
-      const T two_mu = t[0] / (T(1.0) + t[1]);
-      return {two_mu * t[1] / (T(1.0) - T(2.0) * t[1]), T(0.5) * two_mu, t[2]};
-    }
+    T E, nu, rho_0;
+    static Params from(std::span<const T> t) { return {t[0], t[1], t[2]}; }
+    /// Lamé's
+    T mu() const { return T(0.5) * E / (T(1.0) + nu); }
+    T lambda() const { return E / (T(1.0) + nu) * nu / (T(1.0) - T(2.0) * nu); }
   };
   template <class T>
   using State = std::array<T, 0>;
@@ -55,8 +55,9 @@ struct NeoHookean {
     const Sym<T, N> b = left_cauchy_green(P, stress, J_before);
     const Sym<T, N> E = exponential_less_one(inc.strain);
     const T inv_J = T(1.0) / J;
-    const Sym<T, N> next = exp_pair(T(-tr)).whole * stress +
-                           inv_J * (Sym<T, N>::isotropic(P.lambda * tr) + P.mu * stretched(b, E));
+    const Sym<T, N> next =
+        exp_pair(T(-tr)).whole * stress +
+        inv_J * (Sym<T, N>::isotropic(P.lambda() * tr) + P.mu() * stretched(b, E));
     auto failed = negated(finite(T(contract(next, next))) && inc.density > T(0.0));
     for (int i = 0; i < N; ++i) failed = failed || negated(square(inc.strain[i]) <= T(4.0));
     for (int i = 0; i < N; ++i) stress[i] = select(failed, stress[i], next[i]);
@@ -70,8 +71,8 @@ struct NeoHookean {
     const T J = P.rho_0 / density;
     const Matrix<T> Db = times(full(D), full(left_cauchy_green(P, stress, J)));
     const T tr = trace(D);
-    stress_rate = T(-tr) * stress + T(T(1.0) / J) * (Sym<T, N>::isotropic(P.lambda * tr) +
-                                                     T(T(2.0) * P.mu) * symmetric<N>(Db));
+    stress_rate = T(-tr) * stress + T(T(1.0) / J) * (Sym<T, N>::isotropic(P.lambda() * tr) +
+                                                     T(T(2.0) * P.mu()) * symmetric<N>(Db));
   }
 
   /// The stored energy is a potential.
@@ -93,8 +94,9 @@ struct NeoHookean {
     const T J = P.rho_0 / density;
     const T most = mean(stress) + T(2.0 / std::sqrt(3.0)) * shear_norm(deviator(stress));
     // μ + μ: of two products the compiler might fuse either with the sum
-    const T M = (P.lambda * (T(1.0) - T(2.0) * ln(J)) + (P.mu + P.mu)) / J + most;
-    const T shear = P.mu / J;  // far enough stretched, it yields along n: no wave, but still stiff
+    const T M = (P.lambda() * (T(1.0) - T(2.0) * ln(J)) + (P.mu() + P.mu())) / J + most;
+    const T shear =
+        P.mu() / J;  // far enough stretched, it yields along n: no wave, but still stiff
     return select(M > shear, M, shear);
   }
 
@@ -109,8 +111,8 @@ struct NeoHookean {
                          const T& density) {
     const T J = P.rho_0 / density;
     const T ln_J = ln(J);
-    const T W = T(0.5) * P.lambda * ln_J * ln_J +
-                T(0.5) * (J * trace(stress) - T(3.0) * P.lambda * ln_J) - P.mu * ln_J;
+    const T W = T(0.5) * P.lambda() * ln_J * ln_J +
+                T(0.5) * (J * trace(stress) - T(3.0) * P.lambda() * ln_J) - P.mu() * ln_J;
     return W / J;
   }
 
@@ -136,8 +138,8 @@ struct NeoHookean {
                          "other");
       point.density = *given.density;
       const double J = P.rho_0 / point.density;
-      point.stress =
-          Sym<double, 6>::isotropic((P.lambda * std::log(J) + P.mu * (std::cbrt(J * J) - 1.0)) / J);
+      point.stress = Sym<double, 6>::isotropic(
+          (P.lambda() * std::log(J) + P.mu() * (std::cbrt(J * J) - 1.0)) / J);
       return point;
     }
     point.stress = initial_stress(given, 0.0);
@@ -186,8 +188,8 @@ struct NeoHookean {
   /// b = I + (Jσ − λ ln J I)/μ
   template <class T, int N>
   static Sym<T, N> left_cauchy_green(const Params<T>& P, const Sym<T, N>& stress, const T& J) {
-    const T inv_mu = T(1.0) / P.mu;
-    return T(J * inv_mu) * stress + Sym<T, N>::isotropic(T(1.0) - P.lambda * inv_mu * ln(J));
+    const T inv_mu = T(1.0) / P.mu();
+    return T(J * inv_mu) * stress + Sym<T, N>::isotropic(T(1.0) - P.lambda() * inv_mu * ln(J));
   }
 
   /// (I + E) b (I + E) − b
@@ -250,8 +252,8 @@ struct NeoHookean {
                     b[4] * b[5] - b[3] * b[2],
                     b[3] * b[5] - b[0] * b[4],
                     b[3] * b[4] - b[1] * b[5]};
-      const Sym<double, 6> change = J * stress - Sym<double, 6>::isotropic(P.lambda);
-      const double slope = contract(adjugate, change) / (det * P.mu) - 2.0;
+      const Sym<double, 6> change = J * stress - Sym<double, 6>::isotropic(P.lambda());
+      const double slope = contract(adjugate, change) / (det * P.mu()) - 2.0;
       const double step = (std::log(det) - 2.0 * ln_J) / slope;
       ln_J -= step;
       if (std::abs(step) < 1e-14) return ln_J;  // quadratic: the next would be round-off

@@ -26,6 +26,18 @@ bool all_finite(const LawPoint<L>& point) {
 
 const Sym<double, 6> no_strain = Sym<double, 6>::isotropic(0.0);
 
+/// What lifts parameters to another scalar type reads them off Params<double>.
+TYPED_TEST(LawContract, ParamsAreTheParametersInTableOrder) {
+  using L = TypeParam;
+  using Params = typename L::template Params<double>;
+  constexpr std::size_t count = L::parameters.size();
+  static_assert(sizeof(Params) == count * sizeof(double));
+  std::array<double, count> theta;
+  for (std::size_t i = 0; i < count; ++i) theta[i] = 0.1 + 0.01 * static_cast<double>(i);
+  const Params P = Params::from(std::span<const double>(theta));
+  EXPECT_EQ((std::bit_cast<std::array<double, count>>(P)), theta);
+}
+
 TYPED_TEST(LawContract, InitialStateStaysAtRestToTheLastBit) {
   using L = TypeParam;
   for (const LawExample& example : examples_of<L>()) {

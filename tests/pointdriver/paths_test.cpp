@@ -85,6 +85,24 @@ TEST(Paths, the_integrators_agree_on_every_kind_of_path) {
   }
 }
 
+/// Under principal stresses the neo-Hookean update is exact, whatever the step.
+TEST(Paths, an_exact_update_follows_a_drained_test_in_long_steps) {
+  const Law law = make_law({"neo_hookean", {}, {{"E", 1e7}, {"nu", 0.3}, {"rho_0", 1000.0}}});
+  PointTest test =
+      make_test({triaxial(Condition::drained, 0.3, 10)}, 100e3, 0.0, Method::adaptive, 1e-12);
+  const Curve reference = run(law, test);
+  test.settings.method = Method::implicit;
+  test.settings.substeps = 1;
+  const Curve exact = run(law, test);
+  ASSERT_EQ(exact.outcome.status, Status::completed) << explain(*law.info, law.theta, test, exact);
+  EXPECT_EQ(exact.outcome.counts.rejected, 0);
+  ASSERT_EQ(exact.rows.size(), reference.rows.size());
+  for (std::size_t i = 0; i < exact.rows.size(); ++i)
+    for (int c = 0; c < 6; ++c)
+      // the adaptive method's tolerance of 1e-12 per step, in some hundred steps, of E
+      EXPECT_NEAR(exact.rows[i].stress[c], reference.rows[i].stress[c], 1e-10 * 1e7) << i;
+}
+
 TEST(Paths, constant_b_keeps_b_and_p) {
   const Law law = clay();
   PointTest test = make_test({triaxial(Condition::drained, 0.1)}, 100e3, 1.0, Method::adaptive);
