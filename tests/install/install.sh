@@ -3,7 +3,7 @@
 set -euo pipefail
 build=$1 prefix=$2
 "$CMAKE" --build "$build" --target repose repose_models_shared repose_io_shared repose_point_shared \
-  repose_mpm_shared repose_calibration_shared
+  repose_mpm_shared repose_calibration_shared repose_umat
 rm -rf "$prefix"
 "$CMAKE" --install "$build" --prefix "$prefix" > /dev/null
 for file in bin/repose include/repose/version.hpp include/repose/models/law.hpp; do
@@ -11,7 +11,7 @@ for file in bin/repose include/repose/version.hpp include/repose/models/law.hpp;
 done
 "$prefix/bin/repose" --version
 # An include that still begins at the root of the source would find nothing, or another project's file.
-if grep -rnE '#include "(app|calibration|input|io|models|mpm|pointdriver|report|study)/' "$prefix/include"; then
+if grep -rnE '#include "(app|calibration|input|io|models|mpm|pointdriver|report|study|umat)/' "$prefix/include"; then
   echo "these includes were not rewritten" >&2
   exit 1
 fi

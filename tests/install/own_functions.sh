@@ -16,5 +16,5 @@ for library in "$prefix"/lib*/librepose_*.so; do
     status=1
   fi
 done
-((count == 5)) || { echo "$count libraries in $prefix, not 5" >&2; exit 1; }
+((count == 6)) || { echo "$count libraries in $prefix, not 6" >&2; exit 1; }
 exit $status

@@ -7,7 +7,7 @@ source=$1 prefix=$2 work=$3
 rm -rf "$work" && mkdir -p "$work"
 cd "$source"
 mapfile -t pages < <(ls README.md CONTRIBUTING.md docs/*.md)
-mapfile -t headers < <(find app calibration input io models mpm pointdriver report study -name '*.hpp' | sort)
+mapfile -t headers < <(find app calibration input io models mpm pointdriver report study umat -name '*.hpp' | sort)
 
 # What looks like a statement in an indented comment, and is in no fence, would be compiled by nobody.
 stray=$(awk '

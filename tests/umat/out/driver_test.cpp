@@ -229,7 +229,8 @@ TEST_F(UmatDriver, IsStoppedByAMaterialThatIsNone) {
   int status = 0;
   std::string errors;
   const auto rows = drive(
-      "'MU_I-REGULARIZED' 3 3 1 1\n 0.5\n 0 0 0 0 0 0\n 0\n 1\n 1 1\n 0 0 0 0 0 0\n 0 0 0 0 0 0\n",
+      "'MU_I-REGULARIZED'\n 3 3 1 1\n 0.5\n 0 0 0 0 0 0\n 0\n 1\n 1 1\n 0 0 0 0 0 0\n 0 0 0 0 0 "
+      "0\n",
       6, 1, status, errors);
   EXPECT_TRUE(rows.empty());
   EXPECT_EQ(status, 2);

@@ -66,16 +66,64 @@ TEST(Constants, OfEveryExampleAreItsParameters) {
     }
 }
 
-TEST(UmatPage, HasTheTablesOfTheLaws) {
+std::string page() {
   std::ifstream file(std::string(REPOSE_SOURCE_DIR) + "/docs/umat_out.md");
-  std::ostringstream page;
-  page << file.rdbuf();
-  const std::string text = page.str();
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+TEST(UmatPage, HasTheTablesOfTheLaws) {
+  const std::string text = page();
   const std::string heading = "## Every law\n\n";
   const std::size_t at = text.find(heading);
   ASSERT_NE(at, std::string::npos);
   EXPECT_EQ(text.substr(at + heading.size()), tables())
       << "repose models --umat prints what stands below \"" << heading << "\"";
+}
+
+/// The numbers of a data line; a comment has none.
+std::vector<double> numbers_of(std::string line) {
+  std::vector<double> numbers;
+  if (line.starts_with("**")) return numbers;
+  std::replace(line.begin(), line.end(), ',', ' ');
+  std::istringstream words(line);
+  for (double x; words >> x;) numbers.push_back(x);
+  return numbers;
+}
+
+TEST(UmatPage, ItsInputFileMakesAMaterialThatStarts) {
+  std::istringstream lines(page());
+  std::string line, name, keyword;
+  std::vector<double> props, stress;
+  double depvar = 0.0, constants = 0.0;
+  const auto after = [](const std::string& text, const std::string& key) {
+    return text.substr(text.find(key) + key.size());
+  };
+  while (std::getline(lines, line) && !(keyword == "stress" && line == "```")) {
+    if (line.starts_with("*MATERIAL")) name = after(line, "NAME=");
+    if (line.starts_with("*USER MATERIAL")) {
+      keyword = "props";
+      constants = std::stod(after(line, "CONSTANTS="));
+    } else if (line.starts_with("*DEPVAR")) {
+      keyword = "depvar";
+    } else if (line.starts_with("*INITIAL CONDITIONS, TYPE=STRESS")) {
+      keyword = "stress";
+    } else if (keyword == "props") {
+      for (const double x : numbers_of(line)) props.push_back(x);
+    } else if (keyword == "depvar" && depvar == 0.0) {
+      depvar = numbers_of(line).at(0);
+    } else if (keyword == "stress" && line.starts_with("CLAY,")) {
+      stress = numbers_of(after(line, "CLAY,"));
+    }
+  }
+  EXPECT_EQ(constants, static_cast<double>(props.size()));
+  ASSERT_EQ(stress.size(), 6U);
+  Host host(name, props, static_cast<std::size_t>(depvar));
+  host.stress = stress;
+  ASSERT_TRUE(host.step({1e-4, -2e-4, 1e-4, 0.0, 0.0, 0.0}, 1.0));
+  EXPECT_GT(host.statev[0], 1000.0);
+  EXPECT_NEAR(host.statev[1], 1.3e5, 1.0);  // p_c = ocr p, and the step is elastic
 }
 
 }  // namespace

@@ -75,6 +75,36 @@ TYPED_TEST(UmatStep, StartsFromItsStress) {
   }
 }
 
+/// What follows from the state is behind it where there is room, and only there.
+TYPED_TEST(UmatStep, LeavesDerivedVariablesBehindTheState) {
+  using L = TypeParam;
+  constexpr std::size_t states = 1 + L::state.size();
+  constexpr std::size_t derived = derived_fields<L>().size();
+  for (const LawExample& example : examples_of<L>()) {
+    const auto P = parameters_of<L>(example);
+    Random random(32);
+    const LawPoint<L> start = random_point<L>(example, P, random);
+    Host host = host_of<L>(example, start, 3);
+    host.statev.resize(states + derived + 1, -77.0);
+    const Sym<double, 6> strain = random.tensor(0.1 * example.strain);
+    ASSERT_TRUE(host.step(host_strain(strain, 6), example.time));
+    EXPECT_EQ(host.statev.back(), -77.0) << example.label;
+    if constexpr (derived > 0) {
+      typename L::template State<double> state{};
+      Sym<double, 6> stress;
+      for (std::size_t i = 0; i < 6; ++i) stress[component(i)] = host.stress[i];
+      for (std::size_t k = 0; k < L::state.size(); ++k) state[k] = host.statev[1 + k];
+      const auto values = L::derive(P, stress, state);
+      // of the same stress by another compilation: q known to ε makes I known to about
+      // ε M/(M_∞ − M) (I_M + I), and ln p_c to j of that, both factors < 200
+      for (std::size_t k = 0; k < derived; ++k)
+        EXPECT_NEAR(host.statev[states + k], values[k],
+                    4e4 * epsilon * (std::abs(values[k]) + P.I_M))
+            << example.label << ": " << L::derived[k].name;
+    }
+  }
+}
+
 TYPED_TEST(UmatStep, ThatCannotBeDoneChangesNothing) {
   using L = TypeParam;
   const double nan = std::numeric_limits<double>::quiet_NaN();

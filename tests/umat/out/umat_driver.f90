@@ -2,11 +2,11 @@
 ! each component is given its strain or its stress, and the strains that are left follow by Newton's
 ! method with DDSDDE. It knows nothing of repose; it calls the UMAT that it is linked with.
 !
-! Standard input, in list-directed form:
-!   material's name in quotes
+! Standard input, each on lines of its own, behind which a line may go on with words:
+!   the material's name in quotes
 !   ndi nshr nprops nstatv
-!   props, stress (tension positive, 11 22 33 12 13 23), statev       as many numbers as said
-!   legs, and per leg:
+!   props; stress, tension positive, 11 22 33 12 13 23; statev       as many numbers as said
+!   the number of legs, and per leg:
 !     steps, duration of a step
 !     per component 1 where the stress is given, 0 where the strain is
 !     per component the change of that stress or (logarithmic, shear: engineering) strain over the leg
@@ -24,21 +24,33 @@ program umat_driver
   real(dp), allocatable :: start(:), last(:)
   real(dp) :: dtime, time(2), energy(3)
 
-  read (*, *, iostat=status) cmname, ndi, nshr, nprops, nstatv
-  if (status /= 0) call refuse('name, ndi, nshr, nprops, nstatv')
+  read (*, *, iostat=status) cmname
+  if (status /= 0) call refuse('the name')
+  read (*, *, iostat=status) ndi, nshr, nprops, nstatv
+  if (status /= 0) call refuse('ndi, nshr, nprops, nstatv')
   ntens = ndi + nshr
   allocate (props(nprops), stress(ntens), statev(nstatv), change(ntens), stress_given(ntens))
   allocate (ddsdde(ntens, ntens), stran(ntens), dstran(ntens), start(ntens), last(ntens))
-  read (*, *, iostat=status) props, stress, statev, legs
-  if (status /= 0) call refuse('props, stress, statev, legs')
+  read (*, *, iostat=status) props
+  if (status /= 0) call refuse('props')
+  read (*, *, iostat=status) stress
+  if (status /= 0) call refuse('stress')
+  read (*, *, iostat=status) statev
+  if (status /= 0) call refuse('statev')
+  read (*, *, iostat=status) legs
+  if (status /= 0) call refuse('the number of legs')
   stran = 0
   last = 0
   time = 0
   energy = 0
   kinc = 0
   do leg = 1, legs
-    read (*, *, iostat=status) steps, dtime, stress_given, change
-    if (status /= 0) call refuse('a leg')
+    read (*, *, iostat=status) steps, dtime
+    if (status /= 0) call refuse('steps, duration of a leg')
+    read (*, *, iostat=status) stress_given
+    if (status /= 0) call refuse('which stresses a leg gives')
+    read (*, *, iostat=status) change
+    if (status /= 0) call refuse('the changes of a leg')
     kstep = leg
     start = stress
     do step = 1, steps
