@@ -27,9 +27,12 @@ using Json = io::Json;
 /// The input with what the command line changed and the defaults that numbers depend on.
 toml::table resolved(const input::InputFile& input, const input::PointTestFile& file) {
   toml::table table = input.root();
+  if (!input::own_option_lines(file.law).empty())
+    table.insert_or_assign("law", toml::table(toml::parse(input::law_lines(file.law))));
   if (!table.contains("law")) table.insert("law", toml::table{});
   toml::table& law = *table["law"].as_table();
   for (const auto& [key, text] : file.law.options) {
+    if (!input::own_option_lines(file.law).empty()) break;  // they stand there already
     if (text == "true" || text == "false")
       law.insert_or_assign(key, text == "true");
     else
@@ -152,6 +155,10 @@ class PointRun {
     s["steps_rejected"] = o.counts.rejected;
     s["rate_evaluations"] = o.counts.rates;
     s["events"] = o.counts.events;
+    if (o.counts.tangents_checked > 0) {
+      s["tangents_checked"] = o.counts.tangents_checked;
+      s["tangents_off"] = o.counts.tangents_off;
+    }
     s["wall_s"] = wall;
     s["cpu_s"] = cpu;
     s["seed"] = options_.seed;
