@@ -86,13 +86,14 @@ std::string umat_description() {
   std::vector<Row> rows{{"KEY", "UNIT", "DEFAULT", "MEANING"}};
   for (const KeyInfo& key : umat_infos())
     rows.push_back({key.name, key.unit,
-                    key.required         ? "required"
+                    key.required           ? "required"
                     : key.fallback.empty() ? "optional"
                                            : key.fallback,
                     key.doc});
-  return fmt::format("{}\n{}\n\n{}\nThe parameters are PROPS: what names calls them, else prop_1, "
-                     "prop_2, ...; docs/umat_in.md tells more.\n",
-                     umat::law_name, umat::law_doc, aligned(rows, "  "));
+  return fmt::format(
+      "{}\n{}\n\n{}\nThe parameters are PROPS: what names calls them, else prop_1, "
+      "prop_2, ...; docs/umat_in.md tells more.\n",
+      umat::law_name, umat::law_doc, aligned(rows, "  "));
 }
 
 }  // namespace
@@ -149,10 +150,8 @@ std::string laws_as_json(std::string_view name) {
   if (name == umat::law_name) {
     Json keys = Json::array();
     for (const KeyInfo& key : umat_infos())
-      keys.push_back({{"key", key.name},
-                      {"unit", key.unit},
-                      {"required", key.required},
-                      {"doc", key.doc}});
+      keys.push_back(
+          {{"key", key.name}, {"unit", key.unit}, {"required", key.required}, {"doc", key.doc}});
     Json laws = Json::array();
     laws.push_back({{"name", name}, {"doc", umat::law_doc}, {"keys", keys}});
     return laws.dump(2) + "\n";

@@ -113,8 +113,8 @@ std::string word_of(const ParamInfo& parameter, double x) {
 LawSpec read_law(TomlReader law) {
   LawSpec spec;
   InputFile& file = law.file();
-  if (const auto* name = law.get("name"); name != nullptr && name->is_string() &&
-                                          name->as_string()->get() == umat::law_name)
+  if (const auto* name = law.get("name");
+      name != nullptr && name->is_string() && name->as_string()->get() == umat::law_name)
     return read_umat(law);
   spec.name = law.text("name", fmt::format("one of {}", law_names()));
   law.expect_any();

@@ -32,12 +32,13 @@ struct Table {
 
 void head_keys(Keys& keys, Table& t) {
   constexpr Limits statevs{0, static_cast<std::int64_t>(umat::most_statev)};
-  keys.text({"library",
-             "-",
-             "the shared library: a path seen from this file, or one of those that come with repose",
-             {},
-             required},
-            t.library);
+  keys.text(
+      {"library",
+       "-",
+       "the shared library: a path seen from this file, or one of those that come with repose",
+       {},
+       required},
+      t.library);
   keys.text({"content", "-",
              "fingerprint of the library's bytes, written by repose: another library is refused"},
             t.content);
@@ -128,8 +129,7 @@ LawSpec read_umat(TomlReader law) {
       d.names.push_back(umat::prop_name(d, i));
       law.expect(d.names.back());
     }
-  if (law.has("initial_statev") &&
-      t.initial_statev.size() != static_cast<std::size_t>(t.statev)) {
+  if (law.has("initial_statev") && t.initial_statev.size() != static_cast<std::size_t>(t.statev)) {
     law.report("initial_statev",
                fmt::format("{} has {} initial_statev for statev = {}: there must be as many",
                            table_name(law.path()), t.initial_statev.size(), t.statev));
@@ -146,8 +146,7 @@ LawSpec read_umat(TomlReader law) {
   if (t.rho_p) spec.values[std::string(umat::grain_density_name)] = *t.rho_p;
   try {
     umat::Library& library = d.library;
-    library.file =
-        umat::find_library(t.library, std::filesystem::path(file.name()).parent_path());
+    library.file = umat::find_library(t.library, std::filesystem::path(file.name()).parent_path());
     library.content = umat::content_of(library.file);
     library.symbol = t.symbol;
     library.cmname = t.cmname;
@@ -155,14 +154,16 @@ LawSpec read_umat(TomlReader law) {
     library.nstatv = static_cast<std::size_t>(t.statev);
     library.time_limit_s = t.time_limit;
     if (!t.content.empty() && t.content != library.content)
-      throw InputError("content",
-                       fmt::format("{} is not the library that this input was made with: its "
-                                   "content is {} and was {}. Leave content out to take it as it is",
-                                   library.file.string(), library.content, t.content));
+      throw InputError(
+          "content", fmt::format("{} is not the library that this input was made with: its "
+                                 "content is {} and was {}. Leave content out to take it as it is",
+                                 library.file.string(), library.content, t.content));
     umat::check_library(library);
     spec.options["library"] = umat::make_known(d);
   } catch (const InputError& error) {
-    file.report(error, law.path());
+    // a default that does not suit the library is the library's matter
+    const std::string key = law.has(error.key()) ? error.key() : "library";
+    file.report(InputError(key, error.what()), law.path());
   }
   return spec;
 }
@@ -178,9 +179,9 @@ std::string umat_lines(const LawSpec& spec) {
   for (const ParamInfo& parameter : info.parameters) {
     const auto value = spec.values.find(std::string(parameter.name));
     if (value != spec.values.end() && !std::isnan(value->second))
-      out += key_line(parameter.name, toml_number(value->second),
-                      parameter.unit == "-" ? parameter.symbol
-                                            : unit_and_doc(parameter.unit, parameter.doc));
+      out += key_line(
+          parameter.name, toml_number(value->second),
+          parameter.unit == "-" ? parameter.symbol : unit_and_doc(parameter.unit, parameter.doc));
   }
   return out;
 }

@@ -9,8 +9,8 @@
 
 namespace repose::input {
 
-/// Reads the table, loads the library once to see that it can be, and makes the law known. Reports a
-/// library that is not there or has no such function, counts that do not fit, unknown keys.
+/// Reads the table, loads the library once to see that it can be, and makes the law known. Reports
+/// a library that is not there or has no such function, counts that do not fit, unknown keys.
 LawSpec read_umat(TomlReader law);
 
 /// The keys as a file has them, PROPS by their names. The library stands there in full, with the

@@ -331,7 +331,7 @@ std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
   else
     for (const auto& [key, value] : law.options)
       text += value == "true" || value == "false" ? fmt::format("{} = {}\n", key, value)
-                                                : fmt::format("{} = \"{}\"\n", key, value);
+                                                  : fmt::format("{} = \"{}\"\n", key, value);
   const auto line = [](const std::string& key, double x, const std::string& comment) {
     std::string digits = fmt::format("{}", x);
     if (digits.find_first_of(".en") == std::string::npos) digits += ".0";

@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// From tensors as repose has them to arrays as Abaqus has them and back. Stress is tension positive
-/// on both sides; Abaqus' order is 11, 22, 33, 12, 13, 23, and its shear strains are γ = 2ε.
+/// From tensors as repose has them to arrays as Abaqus has them and back. Stress is tension
+/// positive on both sides; Abaqus' order is 11, 22, 33, 12, 13, 23, and its shear strains are γ =
+/// 2ε.
 
 #include <array>
 

@@ -4,18 +4,17 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <new>
 #include <vector>
 
-#include <csignal>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <fmt/format.h>
 
 #include "umat/in/futex.hpp"
 
@@ -240,10 +239,9 @@ void HostProcess::fail() {
       what = fmt::format("it cannot be loaded: {}", message);
       break;
     case Fault::no_symbol:
-      what = fmt::format(
-          "it has no function {}{}", library_.symbol,
-          message.empty() ? ", and none whose name contains \"umat\""
-                          : fmt::format(" (symbol); it has {}", message));
+      what = fmt::format("it has no function {}{}", library_.symbol,
+                         message.empty() ? ", and none whose name contains \"umat\""
+                                         : fmt::format(" (symbol); it has {}", message));
       break;
     case Fault::crashed:
       what = fmt::format("it crashed ({})", signal_name(header.detail));
@@ -299,7 +297,8 @@ void HostProcess::check_finite(std::size_t count, std::size_t ntens) {
     const auto check = [&](const char* name, const double* values, std::size_t n) {
       for (std::size_t k = 0; k < n; ++k)
         if (!std::isfinite(values[k]))
-          fail(Fault::not_finite, i, fmt::format("it returned {}({}) = {}", name, k + 1, values[k]));
+          fail(Fault::not_finite, i,
+               fmt::format("it returned {}({}) = {}", name, k + 1, values[k]));
     };
     check("STRESS", record.stress, ntens);
     check("STATEV", exchange_.statev(i), exchange_.header().nstatv);

@@ -60,9 +60,9 @@ class HostProcess {
   const Library& library() const { return library_; }
   const Exchange& exchange() const { return exchange_; }
 
-  /// Calls the UMAT for the first `count` <= exchange_capacity records, in their order; `subdivide`:
-  /// PNEWDT < 1 is followed by smaller increments. Results that are not finite are a failure.
-  /// After a Failure but not_finite the process is gone: alive() is false.
+  /// Calls the UMAT for the first `count` <= exchange_capacity records, in their order;
+  /// `subdivide`: PNEWDT < 1 is followed by smaller increments. Results that are not finite are a
+  /// failure. After a Failure but not_finite the process is gone: alive() is false.
   void run(std::size_t count, std::size_t ntens, bool subdivide);
   bool alive() const { return pid_ > 0; }
 

@@ -126,8 +126,8 @@ fs::path find_library(const std::string& text, const fs::path& folder) {
   for (const fs::path& place : {beside, shipped})
     if (fs::is_regular_file(place, ignored)) return place;
   if (fs::is_directory(beside, ignored))
-    throw InputError("library", fmt::format("{} is a folder, and a shared library is needed",
-                                            beside.string()));
+    throw InputError(
+        "library", fmt::format("{} is a folder, and a shared library is needed", beside.string()));
   std::string near;
   for (const fs::path& place : {beside, shipped}) {
     std::vector<std::string> files;
@@ -194,7 +194,8 @@ const Description* description_of(const LawInfo& law) {
 InitialPoint initial_point(const Description& d, std::span<const double> theta,
                            const InitialConditions& given) {
   const Layout at = layout_of(d);
-  const double rho_0 = theta[at.rho_0()], rho_p = d.has_grain_density ? theta[at.rho_p()] : std::nan("");
+  const double rho_0 = theta[at.rho_0()],
+               rho_p = d.has_grain_density ? theta[at.rho_p()] : std::nan("");
   const bool takes_v = d.void_ratio_statev > 0 || !std::isnan(rho_p);
   if (given.v && !takes_v)
     throw InputError("v",

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A foreign UMAT as a law: its table of parameters and state, made when an input file names it, and
-/// known to everything that takes a LawSpec from then on.
+/// A foreign UMAT as a law: its table of parameters and state, made when an input file names it,
+/// and known to everything that takes a LawSpec from then on.
 
 #include <optional>
 #include <string>
@@ -18,12 +18,12 @@ inline constexpr std::string_view law_doc =
 
 /// State variables that repose keeps for a UMAT beside STATEV, behind it in the table of state.
 enum OwnState : std::size_t {
-  strain_xx,  ///< STRAN as tensor components in repose's order, six of them
+  strain_xx,                ///< STRAN as tensor components in repose's order, six of them
   elapsed = strain_xx + 6,  ///< TIME [s]
   increments,               ///< KINC of the next call, less 1
   stored,                   ///< SSE [J/m³]
   spent,                    ///< SPD + SCD [J/m³]
-  stiffness,                ///< ρc² of which the step size is made, from DDSDDE [Pa]; 0: not known yet
+  stiffness,  ///< ρc² of which the step size is made, from DDSDDE [Pa]; 0: not known yet
   own_state_count
 };
 inline constexpr std::size_t most_statev = most_state_variables - own_state_count;
@@ -33,7 +33,7 @@ struct Description {
   Library library;
   std::vector<std::string> names;      ///< of PROPS; "" for one without: it is called prop_1, …
   std::vector<double> initial_statev;  ///< STATEV at the start, one value for each
-  bool has_grain_density = false;  ///< rho_p is a parameter: the law knows a specific volume
+  bool has_grain_density = false;      ///< rho_p is a parameter: the law knows a specific volume
   int void_ratio_statev = 0;  ///< the STATEV (from 1) that is the void ratio at the start; 0: none
 };
 
@@ -66,13 +66,13 @@ const Description* description_of(const LawInfo& law);
 struct Layout {
   std::size_t nprops, nstatv;
   std::size_t rho_0() const { return nprops; }
-  std::size_t rho_p() const { return nprops + 1; }  ///< if it has one
+  std::size_t rho_p() const { return nprops + 1; }             ///< if it has one
   std::size_t own(std::size_t i) const { return nstatv + i; }  ///< position in the table of state
 };
 inline Layout layout_of(const Description& d) { return {d.library.nprops, d.library.nstatv}; }
 
-/// Stress, STATEV and density at rest. `theta` may hold NaN for rho_0; then the density is NaN unless
-/// the conditions give it.
+/// Stress, STATEV and density at rest. `theta` may hold NaN for rho_0; then the density is NaN
+/// unless the conditions give it.
 InitialPoint initial_point(const Description& description, std::span<const double> theta,
                            const InitialConditions& given);
 

@@ -17,8 +17,8 @@ namespace {
 /// the point is once it is unloaded, for which a step must be small enough as well.
 constexpr double most_fall = 0.01;
 
-/// What a tangent at rest is asked for with: the direction of a strain matters to some laws, so it is
-/// not 0, and it changes no stress that matters.
+/// What a tangent at rest is asked for with: the direction of a strain matters to some laws, so it
+/// is not 0, and it changes no stress that matters.
 constexpr double probing_strain = -1e-9;
 constexpr double probing_time = 1e-6;  // [s]
 
@@ -46,9 +46,10 @@ struct Rotation {
   void put(double* drot) const {
     const double x = 0.5 * theta[0], y = 0.5 * theta[1], z = 0.5 * theta[2];
     const double f = 2.0 / (1.0 + x * x + y * y + z * z);
-    const double R[9] = {1.0 - f * (y * y + z * z), f * (x * y + z),           f * (x * z - y),
-                         f * (x * y - z),           1.0 - f * (z * z + x * x), f * (y * z + x),
-                         f * (x * z + y),           f * (y * z - x),           1.0 - f * (x * x + y * y)};
+    const double R[9] = {
+        1.0 - f * (y * y + z * z), f * (x * y + z),           f * (x * z - y),
+        f * (x * y - z),           1.0 - f * (z * z + x * x), f * (y * z + x),
+        f * (x * z + y),           f * (y * z - x),           1.0 - f * (x * x + y * y)};
     std::copy_n(R, 9, drot);
   }
 };
@@ -117,8 +118,7 @@ UpdateReport LibraryMaterial::update_all(const BatchOf<N>& batch) const {
   }
   try {
     HostLease host(description_.library);
-    for (std::size_t i = 0; i < at_.nprops; ++i)
-      host->exchange().props()[i] = theta()[i];
+    for (std::size_t i = 0; i < at_.nprops; ++i) host->exchange().props()[i] = theta()[i];
     for (; first < batch.count; first += exchange_capacity) {
       const std::size_t count = std::min(exchange_capacity, batch.count - first);
       for (std::size_t i = 0; i < count; ++i) pack(batch, first + i, host->exchange(), i);
@@ -132,7 +132,8 @@ UpdateReport LibraryMaterial::update_all(const BatchOf<N>& batch) const {
   // what lies behind the points are copies of the last
   const std::size_t last = batch.count - 1;
   const auto spread = [&](double* values) {
-    if (values != nullptr) std::fill(values + batch.count, values + padded(batch.count), values[last]);
+    if (values != nullptr)
+      std::fill(values + batch.count, values + padded(batch.count), values[last]);
   };
   for (double* const values : batch.stress) spread(values);
   for (std::size_t s = 0; s < info_.state.size(); ++s) spread(batch.state[s]);
@@ -226,8 +227,8 @@ void LibraryMaterial::probe(const BatchOf<N>& batch, double* rho_c2) const {
 
 void LibraryMaterial::elastic_volume_strain(const Batch& batch, double* strain) const {
   for (std::size_t k = 0; k < padded(batch.count); ++k)
-    strain[k] = own(batch, strain_xx)[k] + own(batch, strain_xx + 1)[k] +
-                own(batch, strain_xx + 2)[k];
+    strain[k] =
+        own(batch, strain_xx)[k] + own(batch, strain_xx + 1)[k] + own(batch, strain_xx + 2)[k];
 }
 
 void LibraryMaterial::viscosity(const Batch& batch, double* eta, double* thinning) const {
@@ -266,9 +267,10 @@ InitialPoint LibraryMaterial::initial(const InitialConditions& given) const {
 double LibraryMaterial::density() const {
   const double rho_0 = theta()[at_.rho_0()];
   if (std::isnan(rho_0))
-    throw InputError("rho_0",
-                     "a body of umat needs its density: rho_0 in its law, or rho_p there with v or e "
-                     "in its initial state");
+    throw InputError(
+        "rho_0",
+        "a body of umat needs its density: rho_0 in its law, or rho_p there with v or e "
+        "in its initial state");
   return rho_0;
 }
 

@@ -39,8 +39,8 @@ class LibraryMaterial final : public Material {
   /// None: a UMAT remembers its stress.
   void viscosity(const Batch& batch, double* eta, double* thinning) const override;
 
-  /// Throws InputError: "rho_0" where the density is not known, "law" where the library fails at rest
-  /// or has no stiffness there.
+  /// Throws InputError: "rho_0" where the density is not known, "law" where the library fails at
+  /// rest or has no stiffness there.
   InitialPoint initial(const InitialConditions& given) const override;
   double density_at(double p, double ocr) const override;
 

@@ -34,9 +34,8 @@ point::Outcome PointDriver::drive(std::span<const double> numbers, const point::
   const std::size_t n = info_.parameters.size();
   Session session(description_, numbers, test.settings.check_tangent);
   point::ElementStart<PointLaw, double> start;
-  start.parameters = {&session, description_.has_grain_density
-                                    ? numbers[session.layout().rho_p()]
-                                    : std::nan("")};
+  start.parameters = {
+      &session, description_.has_grain_density ? numbers[session.layout().rho_p()] : std::nan("")};
   start.plain = start.parameters;
   std::copy_n(numbers.begin() + static_cast<std::ptrdiff_t>(n), 6 + info_.state.size(),
               start.stress_and_state.begin());
@@ -93,8 +92,7 @@ point::Outcome PointDriver::drive(std::span<const double> numbers, std::span<con
       point::Row<double> down = has_below ? below.rows[r] : curve.rows[r];
       const double width = (has_above && has_below ? 2.0 : 1.0) * h;
       rows[r] = up;
-      point::for_each_number(rows[r], down,
-                             [&](double& x, double& y) { x = (x - y) / width; });
+      point::for_each_number(rows[r], down, [&](double& x, double& y) { x = (x - y) / width; });
     }
   }
   return outcome;

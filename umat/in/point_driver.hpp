@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// The point driver of a foreign UMAT: the library's own update under mixed control, Newton's method
-/// on its DDSDDE.
+/// The point driver of a foreign UMAT: the library's own update under mixed control, Newton's
+/// method on its DDSDDE.
 
 #include "pointdriver/integrate/outside_driver.hpp"
 #include "umat/in/library_law.hpp"
@@ -27,8 +27,8 @@ class PointDriver final : public point::OutsideDriver {
                        const point::PointTest& test, point::Curve& curve,
                        std::vector<point::Curve>& slope_curves) const override;
 
-  /// Relative. A path is met to 1e-8 at worst (control_enough), so that the noise of a difference is
-  /// 1e-5 of the answer and the cut-off error 1e-6 of its third derivative.
+  /// Relative. A path is met to 1e-8 at worst (control_enough), so that the noise of a difference
+  /// is 1e-5 of the answer and the cut-off error 1e-6 of its third derivative.
   static constexpr double slope_step = 1e-3;
 
  private:

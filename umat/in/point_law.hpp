@@ -116,8 +116,8 @@ struct PointLaw {
         const auto change = [&](std::size_t i) {
           return answer->state[in.own(i)] - call.state[in.own(i)];
         };
-        spent->plastic = answer->state[in.own(umat::spent)] != 0.0 ? change(umat::spent)
-                                                                   : work - change(stored);
+        spent->plastic =
+            answer->state[in.own(umat::spent)] != 0.0 ? change(umat::spent) : work - change(stored);
         if (session.checks_tangent()) session.check_tangent();
       }
     return false;

@@ -20,7 +20,8 @@ bool same(const Session::Call& a, const Session::Call& b) {
 Session::Session(const Description& description, std::span<const double> props, bool checks)
     : description_(description),
       at_(layout_of(description)),
-      props_(props.begin(), props.begin() + static_cast<std::ptrdiff_t>(description.library.nprops)),
+      props_(props.begin(),
+             props.begin() + static_cast<std::ptrdiff_t>(description.library.nprops)),
       checks_(checks) {}
 
 void Session::put(const Call& call, const Sym<double, 6>& strain, std::size_t i) {
@@ -29,7 +30,8 @@ void Session::put(const Call& call, const Sym<double, 6>& strain, std::size_t i)
   put_stress(call.stress, record.stress);
   put_strain(strain, record.dstran);
   Sym<double, 6> total;
-  for (int c = 0; c < 6; ++c) total[c] = call.state[at_.own(strain_xx) + static_cast<std::size_t>(c)];
+  for (int c = 0; c < 6; ++c)
+    total[c] = call.state[at_.own(strain_xx) + static_cast<std::size_t>(c)];
   put_strain(total, record.stran);
   std::fill_n(record.drot, 9, 0.0);
   record.drot[0] = record.drot[4] = record.drot[8] = 1.0;

@@ -27,8 +27,8 @@ double wave_modulus(const double* ddsdde) {
   Eigen::SelfAdjointEigenSolver<Matrix> solver(of_shear, Eigen::EigenvaluesOnly);
   const double shear = std::max(0.0, solver.eigenvalues().maxCoeff());
   const double coupling = (dev * volumetric).norm();
-  return std::max({0.0, K + 2.0 / 3.0 * std::sqrt(2.0 / 3.0) * coupling + 2.0 / 3.0 * shear,
-                   0.5 * shear});
+  return std::max(
+      {0.0, K + 2.0 / 3.0 * std::sqrt(2.0 / 3.0) * coupling + 2.0 / 3.0 * shear, 0.5 * shear});
 }
 
 template double wave_modulus<4>(const double*);

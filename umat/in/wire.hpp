@@ -58,7 +58,7 @@ struct Header {
   std::uint32_t parent;  ///< process id of repose
   std::uint32_t fault;   ///< Fault
   std::int32_t detail;   ///< signal, or exit code
-  char message[1000];  ///< ended by 0
+  char message[1000];    ///< ended by 0
 };
 
 /// Where things lie.

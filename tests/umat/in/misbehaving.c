@@ -100,7 +100,7 @@ void umat_(double* stress, double* statev, double* ddsdde, double* sse, double* 
         if (fabs(dstran[i]) > 1e-4) *pnewdt = 0.5;
       break;
     case divide_by_zero:
-      stress[0] += 1 / zero;
+      stress[0] += *kinc / zero;
       break;
   }
 }

@@ -18,8 +18,8 @@ GuardedArray::GuardedArray(const char* name, std::size_t doubles) : name_(name),
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   const std::size_t bytes = doubles * sizeof(double);
   const std::size_t pages = std::max<std::size_t>(1, (bytes + page - 1) / page);
-  void* const memory = ::mmap(nullptr, (pages + 2) * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS,
-                              -1, 0);
+  void* const memory =
+      ::mmap(nullptr, (pages + 2) * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();
   begin_ = static_cast<std::byte*>(memory);
   end_ = begin_ + (1 + pages) * page;

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// An argument of a UMAT, placed so that whoever writes beyond it is found out: it ends where a page
-/// begins that nobody may touch, and known numbers lie before it.
+/// An argument of a UMAT, placed so that whoever writes beyond it is found out: it ends where a
+/// page begins that nobody may touch, and known numbers lie before it.
 
 #include <cstddef>
 #include <cstdint>
@@ -30,9 +30,9 @@ class GuardedArray {
   const char* name_;
   std::size_t size_;
   std::size_t canaries_;
-  std::byte* begin_;       ///< of the mapping, a guard page
-  std::byte* end_;         ///< of what may be touched
-  std::byte* whole_end_;   ///< of the mapping, behind the second guard page
+  std::byte* begin_;      ///< of the mapping, a guard page
+  std::byte* end_;        ///< of what may be touched
+  std::byte* whole_end_;  ///< of the mapping, behind the second guard page
   double* data_;
 };
 

@@ -60,8 +60,8 @@ std::vector<std::string> exported_functions(const std::string& library) {
       ElfW(Sym) symbol{};
       if (!image.copy(section.sh_offset + i * section.sh_entsize, symbol)) return names;
       if (ELF64_ST_TYPE(symbol.st_info) != STT_FUNC || symbol.st_shndx == SHN_UNDEF) continue;
-      names.push_back(image.text(strings.sh_offset + symbol.st_name,
-                                 strings.sh_offset + strings.sh_size));
+      names.push_back(
+          image.text(strings.sh_offset + symbol.st_name, strings.sh_offset + strings.sh_size));
     }
   }
   std::sort(names.begin(), names.end());

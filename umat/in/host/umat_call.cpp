@@ -67,8 +67,9 @@ UmatCall::UmatCall(UmatFunction* function, const Header& header, const char* cmn
       scalars_("the scalar arguments", scalar_count),
       integers_("the integer arguments", (integer_count + 1) / 2),
       cmname_("CMNAME", 10),
-      all_{&stress_, &statev_, &ddsdde_, &ddsddt_, &drplde_, &stran_,  &dstran_,  &time_,    &predef_,
-           &dpred_,  &props_,  &coords_, &drot_,   &dfgrd0_, &dfgrd1_, &scalars_, &integers_, &cmname_},
+      all_{&stress_, &statev_, &ddsdde_, &ddsddt_,  &drplde_,   &stran_,
+           &dstran_, &time_,   &predef_, &dpred_,   &props_,    &coords_,
+           &drot_,   &dfgrd0_, &dfgrd1_, &scalars_, &integers_, &cmname_},
       kept_statev_(header.nstatv) {
   name_.fill(' ');
   std::memcpy(name_.data(), cmname, std::min(name_.size(), std::strlen(cmname)));
