@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "umat/in/futex.hpp"
+#include "umat/in/installation.hpp"
 
 extern char** environ;
 
@@ -32,6 +33,17 @@ std::string signal_name(int signal) {
   const char* const name = ::sigabbrev_np(signal);
   const char* const what = ::sigdescr_np(signal);
   return name == nullptr ? fmt::format("signal {}", signal) : fmt::format("SIG{}, {}", name, what);
+}
+
+/// A call that does nothing but wait may do so for this many times the limit of its own time.
+constexpr double most_waiting = 10.0;
+
+/// CPU time of a process [s]; 0 where it cannot be had.
+double cpu_time(pid_t pid) {
+  clockid_t clock{};
+  timespec now{};
+  if (::clock_getcpuclockid(pid, &clock) != 0 || ::clock_gettime(clock, &now) != 0) return 0.0;
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// A descriptor that is closed at the end of the scope.
@@ -80,16 +92,14 @@ fs::path host_program() {
     throw Failure(Fault::no_host, 0,
                   fmt::format("REPOSE_UMAT_HOST = {} is no program that can be run", named));
   }
-  std::error_code ignored;
-  const fs::path here = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  const std::array places{here / "repose-umat-host",
-                          here.parent_path() / "libexec/repose/repose-umat-host"};
-  for (const fs::path& place : places)
+  const std::vector<fs::path> all = places("repose-umat-host", "libexec/repose/repose-umat-host");
+  for (const fs::path& place : all)
     if (::access(place.c_str(), X_OK) == 0) return place;
   throw Failure(Fault::no_host, 0,
-                fmt::format("the program that runs foreign laws is missing: neither {} nor {} can "
-                            "be run (the environment variable REPOSE_UMAT_HOST may name it)",
-                            places[0].string(), places[1].string()));
+                fmt::format("the program that runs foreign laws, repose-umat-host, is neither beside "
+                            "this one nor at {} (the environment variable REPOSE_UMAT_HOST may name "
+                            "it)",
+                            all[2].string()));
 }
 
 HostProcess::HostProcess(const Library& library) : library_(library) {
@@ -187,6 +197,7 @@ void HostProcess::await(std::uint32_t request) {
   wake(header.request);
   Clock::time_point since = Clock::now();
   std::uint32_t calls = 0;
+  double cpu_since = -1.0;
   for (;;) {
     const std::uint32_t answer = header.answer.load(std::memory_order_acquire);
     if (answer == request) break;
@@ -208,16 +219,19 @@ void HostProcess::await(std::uint32_t request) {
            fmt::format("it ended its process with exit code {} (_exit, _Exit)",
                        WEXITSTATUS(status)));
     }
-    if (const std::uint32_t now = header.calls.load(std::memory_order_acquire); now != calls) {
+    const double cpu = cpu_time(pid_);
+    if (const std::uint32_t now = header.calls.load(std::memory_order_acquire);
+        now != calls || cpu_since < 0.0) {
       calls = now;
       since = Clock::now();
+      cpu_since = cpu;
     }
+    // by its own time, so that a busy machine fails nobody; and by the clock, for one that sleeps
     const double waited = std::chrono::duration<double>(Clock::now() - since).count();
-    if (waited > library_.time_limit_s)
+    if (cpu - cpu_since > library_.time_limit_s || waited > most_waiting * library_.time_limit_s)
       fail(Fault::too_long, header.at.load(std::memory_order_relaxed),
            request == 1 ? fmt::format("it took more than {:g} s to load", library_.time_limit_s)
-                        : fmt::format("a call took more than {:g} s (time_limit): an endless "
-                                      "loop?",
+                        : fmt::format("a call took more than {:g} s (time_limit): an endless loop?",
                                       library_.time_limit_s));
   }
   if (header.fault != static_cast<std::uint32_t>(Fault::none)) fail();

@@ -22,7 +22,7 @@ struct Library {
   std::string symbol = "umat_";
   std::string cmname = "UMAT";  ///< the material's name, CMNAME
   std::size_t nprops = 0, nstatv = 0;
-  double time_limit_s = 10.0;  ///< of a call
+  double time_limit_s = 10.0;  ///< CPU time of a call
   friend bool operator==(const Library&, const Library&) = default;
 };
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "io/fingerprint.hpp"
+#include "umat/in/installation.hpp"
 #include "umat/in/library_material.hpp"
 #include "umat/in/point_driver.hpp"
 
@@ -120,16 +121,16 @@ std::string prop_name(const Description& d, std::size_t i) {
 
 fs::path find_library(const std::string& text, const fs::path& folder) {
   std::error_code ignored;
-  const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  const fs::path shipped = program.parent_path() / "lib/repose/umat" / text;
   const fs::path beside = fs::absolute(folder / text).lexically_normal();
-  for (const fs::path& place : {beside, shipped})
+  std::vector<fs::path> all{beside};
+  for (const fs::path& shipped : places("", "lib/repose/umat")) all.push_back(shipped / text);
+  for (const fs::path& place : all)
     if (fs::is_regular_file(place, ignored)) return place;
   if (fs::is_directory(beside, ignored))
     throw InputError(
         "library", fmt::format("{} is a folder, and a shared library is needed", beside.string()));
   std::string near;
-  for (const fs::path& place : {beside, shipped}) {
+  for (const fs::path& place : all) {
     std::vector<std::string> files;
     for (const auto& entry : fs::directory_iterator(place.parent_path(), ignored))
       files.push_back(entry.path().filename().string());

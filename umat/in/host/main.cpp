@@ -132,7 +132,7 @@ int serve(const Exchange& exchange, const char* library, const char* symbol, con
     if (!call) call = std::make_unique<UmatCall>(function, header, cmname);
     current = call.get();
     // nobody may be left to end an endless loop
-    ::alarm((header.time_limit_s + 1) * (header.count + 1) + 5);
+    ::alarm(10 * (header.time_limit_s + 1) * (header.count + 1));
     for (std::uint32_t i = 0; i < header.count; ++i) {
       header.at.store(i, std::memory_order_relaxed);
       header.calls.fetch_add(1, std::memory_order_release);
