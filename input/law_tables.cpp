@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 
 #include "input/input_file.hpp"
+#include "input/read_umat.hpp"
 #include "io/json.hpp"
 #include "models/registry.hpp"
+#include "umat/in/library_law.hpp"
 
 namespace repose::input {
 namespace {
@@ -79,6 +81,21 @@ std::vector<const LawInfo*> forms_of(std::string_view name) {
   return forms;
 }
 
+/// A foreign law has no table of parameters before a file names its library: its keys instead.
+std::string umat_description() {
+  std::vector<Row> rows{{"KEY", "UNIT", "DEFAULT", "MEANING"}};
+  for (const KeyInfo& key : umat_infos())
+    rows.push_back({key.name, key.unit,
+                    key.required           ? "required"
+                    : key.fallback.empty() ? "optional"
+                                           : key.fallback,
+                    key.doc});
+  return fmt::format(
+      "{}\n{}\n\n{}\nThe parameters are PROPS: what names calls them, else prop_1, "
+      "prop_2, ...; docs/umat_in.md tells more.\n",
+      umat::law_name, umat::law_doc, aligned(rows, "  "));
+}
+
 }  // namespace
 
 std::string law_list() {
@@ -90,10 +107,12 @@ std::string law_list() {
                     std::string(info.doc)});
     last = info.name;
   }
+  rows.push_back({std::string(umat::law_name), "library = \"...\"", std::string(umat::law_doc)});
   return aligned(rows, "") + "\n`repose models LAW` lists the parameters of one.\n";
 }
 
 std::string law_description(std::string_view name) {
+  if (name == umat::law_name) return umat_description();
   std::string out;
   for (const LawInfo* info : forms_of(name)) {
     if (!out.empty()) out += '\n';
@@ -128,6 +147,15 @@ std::string law_description(std::string_view name) {
 
 std::string laws_as_json(std::string_view name) {
   using Json = io::Json;
+  if (name == umat::law_name) {
+    Json keys = Json::array();
+    for (const KeyInfo& key : umat_infos())
+      keys.push_back(
+          {{"key", key.name}, {"unit", key.unit}, {"required", key.required}, {"doc", key.doc}});
+    Json laws = Json::array();
+    laws.push_back({{"name", name}, {"doc", umat::law_doc}, {"keys", keys}});
+    return laws.dump(2) + "\n";
+  }
   const auto finite = [](double x) { return std::isfinite(x) ? Json(x) : Json(); };
   Json laws = Json::array();
   for (const LawInfo* info : forms_of(name)) {

@@ -11,7 +11,9 @@
 #include "input/read_fit_solver.hpp"
 #include "input/read_fit_target.hpp"
 #include "input/read_law.hpp"
+#include "input/read_umat.hpp"
 #include "io/fingerprint.hpp"
+#include "umat/in/library_law.hpp"
 
 namespace repose::input {
 namespace {
@@ -62,6 +64,7 @@ std::vector<std::string> starts_as_overrides(const InputFile& file) {
     if (entry == nullptr || key.str() == "shared") continue;
     const std::string name(key.str());
     const auto law_name = file.root()["law"]["name"].value<std::string>();
+    if (law_name == std::string(umat::law_name)) continue;  // it has a value for each of its names
     const LawList laws = all_laws();
     const ParamInfo* parameter = nullptr;
     for (const LawInfo& info : laws)
@@ -131,6 +134,7 @@ FitFile read_fit(const InputFile& given, std::uint64_t seed, const std::filesyst
 
   toml::table resolved = given.root();
   resolved.erase("chart");  // says nothing of the fit
+  if (toml::table* law = resolved["law"].as_table()) anchor_umat(*law, file.parent_path());
   if (toml::array* targets = resolved["target"].as_array())
     for (auto& node : *targets)
       if (toml::table* t = node.as_table())

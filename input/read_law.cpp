@@ -1,15 +1,18 @@
 #include "input/read_law.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "input/key_info.hpp"
+#include "input/read_umat.hpp"
 #include "input/toml_text.hpp"
 #include "input/write_keys.hpp"
 #include "models/cone.hpp"
 #include "pointdriver/study/laboratory_figures.hpp"
+#include "umat/in/library_law.hpp"
 
 namespace repose::input {
 namespace {
@@ -30,6 +33,9 @@ std::string law_names() {
     if (std::find(names.begin(), names.end(), quoted) == names.end())
       names.push_back(std::move(quoted));
   }
+  if (const std::string umat = fmt::format("\"{}\"", umat::law_name);
+      std::find(names.begin(), names.end(), umat) == names.end())
+    names.push_back(umat);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -107,6 +113,9 @@ std::string word_of(const ParamInfo& parameter, double x) {
 LawSpec read_law(TomlReader law) {
   LawSpec spec;
   InputFile& file = law.file();
+  if (const auto* name = law.get("name");
+      name != nullptr && name->is_string() && name->as_string()->get() == umat::law_name)
+    return read_umat(law);
   spec.name = law.text("name", fmt::format("one of {}", law_names()));
   law.expect_any();
   const std::vector<Form> forms = forms_of(spec.name);
@@ -121,7 +130,15 @@ LawSpec read_law(TomlReader law) {
   };
   if (forms.empty()) {
     const auto* name = law.get("name");
-    if (name != nullptr && name->is_string()) attempt([&] { find_law(spec); });
+    if (name != nullptr && name->is_string()) {
+      // a foreign law is known only once a file has named its library
+      const std::array known{umat::law_name};
+      if (!nearest_name(spec.name, known).empty())
+        law.report("name", fmt::format("unknown law \"{}\"; did you mean \"{}\"?", spec.name,
+                                       umat::law_name));
+      else
+        attempt([&] { find_law(spec); });
+    }
     return spec;
   }
 
@@ -202,7 +219,12 @@ std::string as_angles(const LawInfo& info, std::span<const double> theta, std::s
 
 }  // namespace
 
+std::string own_option_lines(const LawSpec& spec) {
+  return spec.name == umat::law_name ? umat_head(spec) : "";
+}
+
 std::string law_lines(const LawSpec& spec) {
+  if (spec.name == umat::law_name) return umat_lines(spec);
   const LawInfo& info = find_law(spec);
   const std::vector<double> theta = checked_parameters(spec);
   std::string out = key_line("name", toml_string(spec.name), info.doc);
@@ -252,6 +274,7 @@ KeyInfo angle_info(const ParamInfo& parameter) {
 std::vector<KeyInfo> law_forms() {
   std::vector<KeyInfo> laws;
   for (const LawInfo& form : all_laws()) {
+    if (form.name == umat::law_name) continue;  // its keys are its own
     auto law = std::find_if(laws.begin(), laws.end(),
                             [&](const KeyInfo& l) { return l.name == form.name; });
     if (law == laws.end()) {
@@ -286,6 +309,12 @@ std::vector<KeyInfo> law_forms() {
       if (!parameter.angle.name.empty()) law->below.push_back(angle_info(parameter));
     }
   }
+  KeyInfo& umat = laws.emplace_back();
+  umat.name = umat::law_name;
+  umat.kind = ValueKind::table;
+  umat.doc = umat::law_doc;
+  umat.below = umat_infos();
+  umat.open = true;  // names are keys
   return laws;
 }
 

@@ -17,6 +17,10 @@ LawSpec read_law(TomlReader law);
 /// from others (G = 4K) stand in comments, so that they follow when the file is edited.
 std::string law_lines(const LawSpec& spec);
 
+/// What stands in a [law] table between its name and its parameters, for a law whose keys there are
+/// its own (umat); empty for others, whose LawSpec::options are keys.
+std::string own_option_lines(const LawSpec& spec);
+
 /// The word of a parameter that has words, by its value.
 std::string word_of(const ParamInfo& parameter, double x);
 

@@ -391,11 +391,16 @@ PointTestFile read_point_test(InputFile& file) {
   file.throw_if_bad();
   const LawInfo& law = find_law(result.law);
   const point::Method method = point::method_for(law, result.test.settings.method);
-  if (!law.has_stress_memory && method != point::Method::implicit)
+  if (point::method_for(law, point::Method::automatic) == point::Method::implicit &&
+      method != point::Method::implicit)
     file.report("integration.method",
-                fmt::format("the stress of {} ({}) follows the strain rate at once, so there is no "
-                            "rate to integrate: use method = \"implicit\"",
-                            law.name, law.option));
+                law.has_stress_memory
+                    ? fmt::format("{} has an update and no rate to integrate: use method = "
+                                  "\"implicit\"",
+                                  law.name)
+                    : fmt::format("the stress of {} ({}) follows the strain rate at once, so "
+                                  "there is no rate to integrate: use method = \"implicit\"",
+                                  law.name, law.option));
   check_size(file, "", law, result.test);
   try {
     point::check_start(law, checked_parameters(result.law), result.test);

@@ -12,6 +12,7 @@
 #include "input/read_keys.hpp"
 #include "input/read_law.hpp"
 #include "input/toml_text.hpp"
+#include "umat/in/library_law.hpp"
 
 namespace repose::input {
 namespace {
@@ -360,6 +361,11 @@ SceneFile read_scene(InputFile& file) {
       file.report(error);
     }
   }
+  for (const mpm::Body& body : scene.bodies)
+    if (body.law.name == umat::law_name && scene.pressure_averaging > 0.0)
+      file.report("step.pressure_averaging",
+                  "step.pressure_averaging needs to know which part of a strain is elastic, and a "
+                  "umat does not say: leave it out");
   file.throw_if_bad();
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const LawSpec& law = scene.bodies[i].law;

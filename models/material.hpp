@@ -12,8 +12,8 @@
 
 namespace repose {
 
-/// Room for the state variables of a law: those of the library need no more than four, a foreign one
-/// (umat/in) brings its own.
+/// Room for the state variables of a law: those of the library need no more than four, a foreign
+/// one (umat/in) brings its own.
 inline constexpr std::size_t most_state_variables = 64;
 
 /// A run of material points with N tensor components (sym.hpp). Every array has room for
@@ -31,7 +31,7 @@ struct BatchOf {
   std::array<double*, components> stress{};  ///< Cauchy, tension positive [Pa]; updated in place
   /// State variables in table order; updated in place
   std::array<double*, most_state_variables> state{};
-  double* modulus = nullptr;                 ///< out, optional: ρc² [Pa]
+  double* modulus = nullptr;    ///< out, optional: ρc² [Pa]
   double* viscosity = nullptr;  ///< out, optional: shear viscosity limiting the step [Pa s]
   double* work = nullptr;  ///< out, optional: ½(σ_n + σ_{n+1}):Δε, energy per mean volume [J/m³]
   /// Out, optional: what of it the law does not store (StepWork, law.hpp) [J/m³]. What a law that

@@ -16,9 +16,9 @@
 
 namespace repose::point {
 
-/// How well the stress rows are met, relative: Newton goes on to `goal`, and takes what is no larger
-/// than `enough` where round-off, or the noise of an update that cuts its own steps, lets it come no
-/// closer. A law may have its own: `control_goal`, `control_enough`.
+/// How well the stress rows are met, relative: Newton goes on to `goal`, and takes what is no
+/// larger than `enough` where round-off, or the noise of an update that cuts its own steps, lets it
+/// come no closer. A law may have its own: `control_goal`, `control_enough`.
 template <class L>
 struct ControlTolerance {
   static constexpr double goal = [] {

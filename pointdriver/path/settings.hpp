@@ -19,11 +19,11 @@ enum class Method : std::uint8_t {
 
 struct Settings {
   Method method = Method::automatic;
-  double tolerance = 1e-8;   ///< relative, per step
-  int substeps = 10;         ///< implicit: steps per row of output
-  long max_steps = 1000000;  ///< per leg
-  double max_strain = 10.0;  ///< a path beyond this has run away
-  bool energy = true;        ///< integrate work and dissipation along
+  double tolerance = 1e-8;     ///< relative, per step
+  int substeps = 10;           ///< implicit: steps per row of output
+  long max_steps = 1000000;    ///< per leg
+  double max_strain = 10.0;    ///< a path beyond this has run away
+  bool energy = true;          ///< integrate work and dissipation along
   bool check_tangent = false;  ///< of a foreign law: count the steps whose tangent is off (Counts)
 };
 

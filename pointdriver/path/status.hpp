@@ -42,10 +42,10 @@ struct Counts {
 
 struct Outcome {
   Status status = Status::completed;
-  double fraction = 0.0;  ///< finished part of the path, 1 if completed (legs count alike)
-  double time = 0.0;      ///< test time at the end [s]
-  int leg = 0;            ///< the leg in which it ended
-  int stop = -1;          ///< which stop condition of that leg, if stopped
+  double fraction = 0.0;     ///< finished part of the path, 1 if completed (legs count alike)
+  double time = 0.0;         ///< test time at the end [s]
+  int leg = 0;               ///< the leg in which it ended
+  int stop = -1;             ///< which stop condition of that leg, if stopped
   std::string_view fault{};  ///< if law_failed: how, in a word of static text ("umat_crashed")
   Counts counts;
 };

@@ -326,9 +326,12 @@ std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
       std::count_if(file.targets.begin(), file.targets.end(),
                     [](const auto& t) { return !t.held_out; }),
       file.name, result.best().objective, law.name);
-  for (const auto& [key, value] : law.options)
-    text += value == "true" || value == "false" ? fmt::format("{} = {}\n", key, value)
-                                                : fmt::format("{} = \"{}\"\n", key, value);
+  if (const std::string own = input::own_option_lines(law); !own.empty())
+    text += own;
+  else
+    for (const auto& [key, value] : law.options)
+      text += value == "true" || value == "false" ? fmt::format("{} = {}\n", key, value)
+                                                  : fmt::format("{} = \"{}\"\n", key, value);
   const auto line = [](const std::string& key, double x, const std::string& comment) {
     std::string digits = fmt::format("{}", x);
     if (digits.find_first_of(".en") == std::string::npos) digits += ".0";

@@ -59,9 +59,13 @@ void add_figures(const input::PointTestFile& file, const TestResult& result, Jso
 
 toml::table resolved_test(const input::InputFile& input, const input::PointTestFile& file) {
   toml::table table = input.root();
+  const bool own_options = !input::own_option_lines(file.law).empty();  // they stand in law_lines()
+  if (own_options)
+    table.insert_or_assign("law", toml::table(toml::parse(input::law_lines(file.law))));
   if (!table.contains("law")) table.insert("law", toml::table{});
   toml::table& law = *table["law"].as_table();
   for (const auto& [key, text] : file.law.options) {
+    if (own_options) break;
     if (text == "true" || text == "false")
       law.insert_or_assign(key, text == "true");
     else
@@ -117,6 +121,10 @@ Json test_summary(const input::PointTestFile& file, const TestResult& result,
   s["steps_rejected"] = o.counts.rejected;
   s["rate_evaluations"] = o.counts.rates;
   s["events"] = o.counts.events;
+  if (o.counts.tangents_checked > 0) {
+    s["tangents_checked"] = o.counts.tangents_checked;
+    s["tangents_off"] = o.counts.tangents_off;
+  }
   s["wall_s"] = result.wall_s;
   s["cpu_s"] = cpu_s;
   s["seed"] = seed;

@@ -17,7 +17,9 @@ TestResult drive(const input::PointTestFile& file) {
   result.law = &find_law(file.law);
   result.theta = checked_parameters(file.law);
   const double begun = usage().wall_s;
-  point::simulate(*result.law, result.theta, file.test, result.curve);
+  point::PointTest test = file.test;
+  test.settings.check_tangent = true;
+  point::simulate(*result.law, result.theta, test, result.curve);
   result.wall_s = usage().wall_s - begun;
   result.reason = point::explain(*result.law, result.theta, file.test, result.curve);
   result.figures = point::laboratory_figures(*result.law, result.theta, file.test, result.curve,
@@ -27,6 +29,13 @@ TestResult drive(const input::PointTestFile& file) {
 
 std::vector<std::string> remarks(const input::PointTestFile& file, const TestResult& result) {
   std::vector<std::string> found;
+  if (const point::Counts& counts = result.curve.outcome.counts; counts.tangents_off > 0)
+    found.push_back(fmt::format(
+        "the tangent that {} returns (DDSDDE) is off by more than 10 % from differences of its "
+        "stress in {} of {} steps ({:.3g} %)",
+        result.law->name, counts.tangents_off, counts.tangents_checked,
+        100.0 * static_cast<double>(counts.tangents_off) /
+            static_cast<double>(counts.tangents_checked)));
   if (point::variable_index(*result.law, "I") < 0 || result.curve.rows.empty()) return found;
   const auto columns = columns_of(
       file, result, std::array{point::Quantity::I, point::Quantity::p, point::Quantity::q});
