@@ -110,7 +110,7 @@ ReadColumns::ReadColumns(const py::object& given, std::string_view what, std::si
     : held_(as_numbers(given, what)) {
   require_shape(held_, what, points, columns);
   const std::size_t count = columns_in(columns);
-  if (suits(held_, points, columns, false)) {
+  if (points > 0 && suits(held_, points, columns, false)) {
     for (std::size_t k = 0; k < count; ++k)
       columns_.push_back(columns == flat ? held_.data()
                                          : held_.data(0, static_cast<py::ssize_t>(k)));

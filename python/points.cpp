@@ -66,6 +66,7 @@ class Driven {
   const input::PointTestFile& file() const { return test_.file(); }
   const point::Curve& curve() const { return result_.curve; }
   bool failed() const { return result_.failed(); }
+  double seconds() const { return result_.wall_s; }
 
   std::vector<std::string> columns() const {
     std::vector<std::string> names;
@@ -232,6 +233,7 @@ void bind_point(py::module_& module) {
       .def_property_readonly("fraction", [](const Driven& d) { return d.curve().outcome.fraction; })
       .def_property_readonly("steps",
                              [](const Driven& d) { return d.curve().outcome.counts.steps; })
+      .def_property_readonly("wall_s", &Driven::seconds)
       .def_property_readonly("reason", &Driven::reason)
       .def_property_readonly("notes", &Driven::notes)
       .def_property_readonly("stress", [](const Driven& d) { return d.tensor(&Row::stress); })

@@ -27,10 +27,22 @@ from .simulation import Nodes, Points, Simulation, estimate
 from .verbs import chart, run, sweep, validate
 
 __version__ = version
+
+
+def cmake_dir() -> str:
+    """The folder that find_package(repose) takes as repose_DIR, where the package was installed by
+    pip: the C++ headers, libraries and CMake files lie within it."""
+    from pathlib import Path
+    folder = Path(__file__).resolve().parent / "lib" / "cmake" / "repose"
+    if not folder.is_dir():
+        raise FileNotFoundError(f"{folder}: this package was not installed by pip")
+    return str(folder)
+
+
 __all__ = [
     "Columns", "FitResult", "InputError", "Law", "LawInfo", "Nodes", "NumericalFailure",
     "Parameter", "PointResult", "PointTest", "Points", "PythonLaw", "Result", "Simulation",
-    "batch_array", "chart", "estimate", "fit", "instruction_set", "json_schema", "keys", "laws",
+    "batch_array", "chart", "cmake_dir", "estimate", "fit", "instruction_set", "json_schema", "keys", "laws",
     "point", "register_law", "run", "shipped_cases", "shipped_scenes", "shipped_tests", "sweep",
     "validate", "version",
 ]

@@ -31,10 +31,8 @@ class Fits(unittest.TestCase):
             fit = repose.fit({"law": law,
                               "fit": {"M": {"lower": 0.5, "upper": 1.5},
                                       "lambda": {"lower": 0.05, "upper": 0.4}},
-                              "target": [{"name": "twin", "data": data, "x": "eps_a",
-                                          "channels": [{"column": "q_Pa", "noise": 1e3}]
-                                          if False else ["q_Pa"],
-                                          "initial": initial,
+                              "target": [{"name": "twin", "data": data, "x": "eps_a", "y": "q_Pa",
+                                          "noise": {"q_Pa": 1e3}, "initial": initial,
                                           "test": {"kind": "triaxial", "drainage": "drained"}}],
                               "solver": {"starts": 3}},
                              progress=lambda start, starts, objective: heard.append((start, starts)))
@@ -74,10 +72,14 @@ class Fits(unittest.TestCase):
 class Verbs(unittest.TestCase):
     def test_validate(self):
         with tempfile.TemporaryDirectory() as folder:
-            result = repose.validate("no_such_case", output=folder) if False else None
             with self.assertRaisesRegex(repose.InputError, "there is no case 'no_such_case'"):
                 repose.validate("no_such_case", output=folder, quiet=True)
-            self.assertIsNone(result)
+            result = repose.validate("mcc_undrained", laws=["mcc"], output=folder, quiet=True,
+                                     plot=False)
+            self.assertEqual(result.status, "done")
+            self.assertEqual([case["name"] for case in result.summary["cases"]], ["mcc_undrained"])
+            table = repose.Columns.read(os.path.join(folder, "mcc_undrained", "result.csv"))
+            self.assertIn("inside", list(table["verdict"]))
 
     def test_command_line_mistakes_are_input_errors(self):
         with tempfile.TemporaryDirectory() as folder:

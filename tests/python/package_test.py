@@ -14,7 +14,7 @@ ROOT = os.environ["REPOSE_SOURCE_DIR"]
 
 class Package(unittest.TestCase):
     def test_stub_is_what_the_module_has(self):
-        subprocess.run([sys.executable, os.path.join(ROOT, "python/make_stub.py"), "--check"], check=True)
+        subprocess.run([sys.executable, os.path.join(ROOT, "python/tools/make_stub.py"), "--check"], check=True)
 
     def test_everything_public_is_documented(self):
         for name in repose.__all__:

@@ -112,7 +112,7 @@ class Stepping(unittest.TestCase):
         with self.assertRaisesRegex(repose.InputError, "did you mean 'flat_mu_i'"):
             repose.Simulation("flat_mui")
         sim = repose.Simulation("flat_mu_i", **COARSE)
-        for edge, wall, words in (("rihgt", "open", "did you mean 'right'"), ("right", "opne", "must be one of"),
+        for edge, wall, words in (("rigt", "open", "did you mean 'right'"), ("right", "opne", "must be one of"),
                                   ("right", "periodic", "does not become periodic")):
             with self.assertRaisesRegex(repose.InputError, words):
                 sim.set_wall(edge, wall)
