@@ -19,7 +19,7 @@ for t in np.linspace(0.0, end, 7)[1:]:
 
 sim.save("heap.h5")  # with heap.toml; repose.Simulation.load("heap.h5") goes on from here
 
-sim.tilt_deg = 15.0
-sim.step(until=end + 0.1)
-print(f"tilted by 15 degrees: front {sim.diagnostics()['front_99_m']:.3f} m")
+sim.tilt_deg = 25.0
+sim.step(until=end + 0.3)
+print(f"tilted by 25 degrees: front {sim.diagnostics()['front_99_m']:.3f} m")
 sim.plot(colour="pressure").savefig("collapse.png", dpi=110)

@@ -44,6 +44,8 @@ class Driven:
     def summary(self: Driven) -> str:
         """summary.json, as text."""
     @property
+    def wall_s(self) -> float: ...
+    @property
     def work(self) -> numpy.ndarray: ...
 
 class Input:
