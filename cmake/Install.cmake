@@ -19,6 +19,7 @@ set(repose_public_headers
   io/frame_writer.hpp
   io/json.hpp
   io/vtkhdf.hpp
+  models/batch_law.hpp
   models/ill_posedness.hpp
   models/instruction_set.hpp
   models/law.hpp
@@ -28,6 +29,7 @@ set(repose_public_headers
   models/registry.hpp
   models/scalar_traits.hpp
   models/sym.hpp
+  models/tangent.hpp
   mpm/grid/numerical_failure.hpp
   mpm/output/history.hpp
   mpm/output/rest_pressure.hpp
@@ -37,6 +39,8 @@ set(repose_public_headers
   mpm/study/estimate.hpp
   mpm/study/ill_posed_points.hpp
   pointdriver/integrate/gradient.hpp
+  pointdriver/integrate/material_driver.hpp
+  pointdriver/integrate/outside_driver.hpp
   pointdriver/integrate/simulate.hpp
   pointdriver/path/control.hpp
   pointdriver/path/curve.hpp
@@ -60,7 +64,6 @@ set(repose_law_headers
   pointdriver/integrate/flow.hpp
   pointdriver/integrate/implicit.hpp
   pointdriver/integrate/leg_run.hpp
-  pointdriver/integrate/outside_driver.hpp
   pointdriver/integrate/plain_rows.hpp
   pointdriver/integrate/register_law.hpp
   pointdriver/integrate/start.hpp

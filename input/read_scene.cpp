@@ -59,6 +59,8 @@ void speed_key(Keys& keys, double& speed) {
   keys.number({"speed", "m/s", "of the wall along itself", {}, required}, speed);
 }
 
+}  // namespace
+
 Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   const toml::node& node = *table.get(key);
   if (node.is_table()) {
@@ -89,6 +91,8 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   }
   return {wall_kinds[table.choice(key, {wall_words.begin(), wall_words.end()}, 0)]};
 }
+
+namespace {
 
 std::string wall_text(const Wall& wall) {
   if (wall.kind == Wall::Kind::friction)

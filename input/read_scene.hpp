@@ -24,6 +24,10 @@ struct SceneFile {
 /// Every key of a scene file but [chart] (read_chart.hpp).
 void scene_keys(Keys& keys, SceneFile& file);
 
+/// An edge of the box as [domain] writes it: "slip", { friction = 0.4 }, ... What is none is
+/// reported, and `fallback` returned.
+mpm::Wall read_wall(TomlReader& table, std::string_view key, const mpm::Wall& fallback);
+
 /// Reads and validates a scene. Throws BadInput with everything that is wrong.
 SceneFile read_scene(InputFile& file);
 

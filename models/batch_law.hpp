@@ -4,7 +4,7 @@
 /// compiling it: the Material around it rotates, strains, takes failed points back and counts the
 /// work, as LawMaterial does around a law of templates.
 
-#include <functional>
+#include <span>
 #include <vector>
 
 #include "models/material.hpp"

@@ -56,16 +56,38 @@ Simulation::NodeFields Simulation::Impl<dim>::node_fields() {
   all.mass.assign(count, 0.0);
   all.velocity.assign(dim * count, 0.0);
   if (steps == 0) return all;
-  for (std::size_t n = 0; n < count; ++n) {
-    typename GridOf<dim>::Index index{};
-    std::size_t rest = n;
-    for (std::size_t a = dim; a-- > 0; rest /= all.nodes[a])
-      index[a] = static_cast<int>(rest % all.nodes[a]);
-    const auto [block, place] = grid.node(index);
-    if (block == nullptr || !(block->mirrored_mass[place] > 0.0)) continue;
-    all.mass[n] = block->mirrored_mass[place];
-    for (std::size_t a = 0; a < dim; ++a) all.velocity[dim * n + a] = block->v[a][place];
-  }
+  // what stands for a node behind an edge, or the same node where it is inside; −1: nothing does
+  const auto stands_for = [&](std::size_t a, int i) {
+    const int last = grid.cells()[a];
+    if (a == 0 && walls.periodic()) return (i + last) % last;
+    if (i < 0) return walls.low(a).kind == Wall::Kind::open ? -1 : -i;
+    if (i > last) return walls.high(a).kind == Wall::Kind::open ? -1 : 2 * last - i;
+    return i;
+  };
+  typename GridOf<dim>::Index index{};
+  const auto place_of = [&](const typename GridOf<dim>::Index& at) {
+    std::size_t n = 0;
+    for (std::size_t a = 0; a < dim; ++a) n = n * all.nodes[a] + static_cast<std::size_t>(at[a]);
+    return n;
+  };
+  const auto visit_axis = [&](const auto& self, std::size_t a) -> void {
+    for (index[a] = -1; index[a] <= grid.cells()[a] + 1; ++index[a]) {
+      if (a + 1 < dim) {
+        self(self, a + 1);
+        continue;
+      }
+      const auto [block, place] = grid.node(index);
+      if (block == nullptr || !(block->mass[place] > 0.0)) continue;
+      typename GridOf<dim>::Index home{};
+      for (std::size_t k = 0; k < dim; ++k) home[k] = stands_for(k, index[k]);
+      if (std::any_of(home.begin(), home.end(), [](int i) { return i < 0; })) continue;
+      all.mass[place_of(home)] += block->mass[place];
+      if (home != index) continue;
+      for (std::size_t k = 0; k < dim; ++k)
+        all.velocity[dim * place_of(home) + k] = block->v[k][place];
+    }
+  };
+  visit_axis(visit_axis, 0);
   return all;
 }
 

@@ -128,9 +128,10 @@ class Simulation {
   };
   PointFields point_fields() const;
 
-  /// The nodes of the box in the last step, x slowest: mass with what lies behind the walls
-  /// folded in, and velocity after forces and walls. Zero where no point is near, and before the
-  /// first step.
+  /// The nodes of the box in the last step, x slowest: mass, that of a node behind an edge added to
+  /// the node that it mirrors (behind a periodic edge, to the node it is; the last node along x is
+  /// then the first and left empty), and velocity after forces and walls. Zero where no point is
+  /// near, and before the first step.
   struct NodeFields {
     std::vector<std::size_t> nodes;  ///< along each axis
     std::vector<double> mass;        ///< [kg/m], in space [kg]
