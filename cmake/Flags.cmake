@@ -57,6 +57,7 @@ function(repose_add_library name)
     # what reads is instrumented; what computes and draws is taken as another build has compiled it
     string(REGEX REPLACE "^repose_" "" room ${name})
     string(REPLACE "point" "pointdriver" room ${room})
+    string(REPLACE "umat_" "umat/" room ${room})
     add_library(${name} STATIC IMPORTED GLOBAL)
     set_target_properties(${name} PROPERTIES IMPORTED_LOCATION ${REPOSE_ROOMS_FROM}/${room}/lib${name}.a)
     target_link_libraries(${name} INTERFACE repose_flags ${arg_LIBS})
