@@ -51,7 +51,10 @@ void head_keys(Keys& keys, Table& t) {
   keys.integer({"void_ratio_statev", "-",
                 "the state variable (from 1) that is the void ratio: set from [initial] e or v"},
                statevs, t.void_ratio_statev);
-  keys.number({"time_limit", "s", "a call that takes more CPU time, or ten times as long, has failed", {1e-3, 1e5, false, false}},
+  keys.number({"time_limit",
+               "s",
+               "a call that takes more CPU time, or ten times as long, has failed",
+               {1e-3, 1e5, false, false}},
               t.time_limit);
 }
 

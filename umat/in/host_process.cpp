@@ -95,11 +95,12 @@ fs::path host_program() {
   const std::vector<fs::path> all = places("repose-umat-host", "libexec/repose/repose-umat-host");
   for (const fs::path& place : all)
     if (::access(place.c_str(), X_OK) == 0) return place;
-  throw Failure(Fault::no_host, 0,
-                fmt::format("the program that runs foreign laws, repose-umat-host, is neither beside "
-                            "this one nor at {} (the environment variable REPOSE_UMAT_HOST may name "
-                            "it)",
-                            all[2].string()));
+  throw Failure(
+      Fault::no_host, 0,
+      fmt::format("the program that runs foreign laws, repose-umat-host, is neither beside "
+                  "this one nor at {} (the environment variable REPOSE_UMAT_HOST may name "
+                  "it)",
+                  all[2].string()));
 }
 
 HostProcess::HostProcess(const Library& library) : library_(library) {

@@ -9,7 +9,8 @@ std::vector<fs::path> places(std::string_view beside, std::string_view below) {
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
   std::vector<fs::path> found;
   if (!beside.empty()) found.push_back(program / beside);
-  for (const fs::path& prefix : {program.parent_path(), program.parent_path().parent_path().parent_path()}) {
+  for (const fs::path& prefix :
+       {program.parent_path(), program.parent_path().parent_path().parent_path()}) {
     if (!beside.empty()) found.push_back(prefix / "bin" / beside);
     found.push_back(prefix / below);
   }

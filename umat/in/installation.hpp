@@ -8,9 +8,9 @@
 
 namespace repose::umat {
 
-/// `beside` in the folder of the program; then, from the folder that has bin and lib, and from the one
-/// that has lib/repose/SET of a program compiled for another instruction set (app/other_sets.hpp),
-/// bin/`beside` and `below`. An empty `beside` is left out.
+/// `beside` in the folder of the program; then, from the folder that has bin and lib, and from the
+/// one that has lib/repose/SET of a program compiled for another instruction set
+/// (app/other_sets.hpp), bin/`beside` and `below`. An empty `beside` is left out.
 std::vector<std::filesystem::path> places(std::string_view beside, std::string_view below);
 
 }  // namespace repose::umat
