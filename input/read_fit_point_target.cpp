@@ -26,6 +26,12 @@ void TargetReader::read_point_target(TomlReader& table, const FitTable& data, Co
   measure_ = read_strain_measure(table, point::StrainMeasure::logarithmic);
   read_initial_freedom(table, target, e.test.initial);
   e.start_moves = !states_stress(e.test.initial) || stress_is_free(table);
+  const auto asks_for_v = [&](const Quantity q) { return q == Quantity::v; };
+  if (point::parameter_index(out_.info->parameters, "rho_p") < 0 &&
+      ((compared.x && asks_for_v(*compared.x)) ||
+       std::any_of(compared.y.begin(), compared.y.end(), asks_for_v)))
+    table.report("y", fmt::format("{} has no v: {} needs rho_p, the density of its grains, for it",
+                                  table.path(), out_.info->name));
   const bool sound = compared.x && compared.y.size() == target.channels.size() && !data.x.empty();
   if (sound)
     read_test(table, *compared.x, data, compared.rows, e, target);

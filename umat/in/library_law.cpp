@@ -123,7 +123,9 @@ fs::path find_library(const std::string& text, const fs::path& folder) {
   std::error_code ignored;
   const fs::path beside = fs::absolute(folder / text).lexically_normal();
   std::vector<fs::path> all{beside};
-  for (const fs::path& shipped : places("", "lib/repose/umat")) all.push_back(shipped / text);
+  const bool bare = !fs::path(text).has_parent_path();
+  if (bare)
+    for (const fs::path& shipped : places("", "lib/repose/umat")) all.push_back(shipped / text);
   for (const fs::path& place : all)
     if (fs::is_regular_file(place, ignored)) return place;
   if (fs::is_directory(beside, ignored))
@@ -141,8 +143,10 @@ fs::path find_library(const std::string& text, const fs::path& folder) {
     near = fmt::format("; did you mean {}?", (fs::path(text).parent_path() / near).string());
     break;
   }
-  throw InputError("library", fmt::format("there is no {}, nor {} among the libraries of repose{}",
-                                          beside.string(), text, near));
+  throw InputError(
+      "library",
+      fmt::format("there is no {}{}{}", beside.string(),
+                  bare ? ", nor one of that name among the libraries of repose" : "", near));
 }
 
 std::string content_of(const fs::path& library) {

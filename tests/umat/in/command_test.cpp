@@ -123,6 +123,9 @@ TEST_F(UmatCommand, ResolvedInputGivesTheSameBits) {
   EXPECT_EQ(content_of(scratch.path() / "a/curve.csv"), content_of(scratch.path() / "b/curve.csv"));
   EXPECT_FALSE(content_of(scratch.path() / "a/curve.csv").empty());
   EXPECT_EQ(summary("a").at("tangents_checked"), summary("a").at("steps"));
+  // one step of a hundred straddles yield: that is told, and no reason for a warning
+  EXPECT_LE(summary("a").at("tangents_off").get<int>(), 1);
+  EXPECT_TRUE(summary("a").at("warnings").empty());
   // a key of a name beats its place in the list
   ASSERT_EQ(repose("point " + file + " --set law.E=2e7 --no-plot -o " + folder("c")).code, 0);
   EXPECT_NE(content_of(scratch.path() / "a/curve.csv"), content_of(scratch.path() / "c/curve.csv"));
