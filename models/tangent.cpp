@@ -1,11 +1,12 @@
 #include "models/tangent.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "models/all_laws.hpp"
-#include "models/dual.hpp"
 #include "models/objective.hpp"
+#include "models/point_tangent.hpp"
 #include "models/registry.hpp"
 
 namespace repose {
@@ -35,28 +36,19 @@ UpdateReport in_duals(std::span<const double> theta, const BatchOf<N>& batch, do
   constexpr auto n = static_cast<std::size_t>(N);
   const std::vector<D> constants(theta.begin(), theta.end());
   const auto P = L::template Params<D>::from(std::span<const D>(constants));
+  std::array<double, L::state.size()> state{};
   UpdateReport report;
   for (std::size_t i = 0; i < batch.count; ++i) {
-    Increment<D, N> inc;
-    Sym<D, N> stress;
-    typename L::template State<D> state{};
-    const Sym<double, N> before = rotated_stress(batch, i);
-    for (int k = 0; k < N; ++k) {
-      inc.strain[k] = D(batch.strain[static_cast<std::size_t>(k)][i], k);
-      stress[k] = D(before[k]);
-    }
-    for (std::size_t k = 0; k < L::state.size(); ++k) state[k] = D(batch.state[k][i]);
-    inc.dt = D(batch.dt);
-    inc.density = D(batch.density[i]) * exp(-trace(inc.strain));
-    const bool failed = L::update(P, inc, stress, state);
+    Sym<double, N> strain;
+    for (std::size_t k = 0; k < n; ++k) strain.c[k] = batch.strain[k][i];
+    for (std::size_t k = 0; k < state.size(); ++k) state[k] = batch.state[k][i];
     double* const at = tangent + i * n * n;
-    bool sound = !failed;
-    for (std::size_t a = 0; a < n; ++a)
-      for (std::size_t b = 0; b < n; ++b) {
-        at[a * n + b] = stress.c[a].v[static_cast<int>(b)];
-        sound = sound && std::isfinite(at[a * n + b]);
-      }
-    if (!sound) fail(report, i, at, n * n);
+    Tangent<N> found;
+    if (point_tangent<L, N>(P, strain, batch.dt, batch.density[i], rotated_stress(batch, i), state,
+                            found))
+      for (std::size_t a = 0; a < n; ++a) std::copy_n(found[a].begin(), n, at + a * n);
+    else
+      fail(report, i, at, n * n);
   }
   return report;
 }
@@ -68,9 +60,8 @@ UpdateReport by_differences(const Material& material, const BatchOf<N>& batch, d
   constexpr std::size_t room = padded(2 * n);
   constexpr double delta = 1e-7;
   std::array<std::array<double, room>, n> strain{}, stress{};
-  std::array<std::array<double, room>, 4> state{};
+  std::vector<std::array<double, room>> state(material.law().state.size());
   std::array<double, room> density{};
-  const std::size_t variables = material.law().state.size();
   UpdateReport report;
   for (std::size_t i = 0; i < batch.count; ++i) {
     const Sym<double, N> before = rotated_stress(batch, i);
@@ -85,7 +76,7 @@ UpdateReport by_differences(const Material& material, const BatchOf<N>& batch, d
       moved.strain[k] = strain[k].data();
       moved.stress[k] = stress[k].data();
     }
-    for (std::size_t k = 0; k < variables; ++k) {
+    for (std::size_t k = 0; k < state.size(); ++k) {
       state[k].fill(batch.state[k][i]);
       moved.state[k] = state[k].data();
     }

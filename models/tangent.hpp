@@ -2,9 +2,17 @@
 /// \file
 /// The consistent tangent of a batch: how the stress after a step depends on the step's strain.
 
+#include <array>
+
 #include "models/material.hpp"
 
 namespace repose {
+
+/// ∂σ_a/∂Δε_b [a][b] in tensor components (sym.hpp) [Pa]: for b = xy the change with ε_xy and its
+/// equal ε_yx together.
+template <int N>
+using Tangent =
+    std::array<std::array<double, static_cast<std::size_t>(N)>, static_cast<std::size_t>(N)>;
 
 /// tangent[(i·N + a)·N + b] = ∂σ_a/∂Δε_b of point i [Pa], with σ what Material::update() would
 /// leave and Δε the batch's strain in tensor components (for b = xy it is the change with ε_xy and

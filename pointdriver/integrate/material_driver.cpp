@@ -9,6 +9,9 @@
 namespace repose::point {
 namespace {
 
+/// As many as a law from outside may have.
+constexpr std::size_t states = most_state_variables;
+
 /// The Material that this thread is driving.
 thread_local const Material* driven = nullptr;
 
@@ -41,7 +44,7 @@ struct SmallBatch {
       stress[k][i] = s.c[k];
       strain[k][i] = step.c[k];
     }
-    for (std::size_t k = 0; k < 4; ++k) state[k][i] = variables[k];
+    for (std::size_t k = 0; k < states; ++k) state[k][i] = variables[k];
     density[i] = rho;
   }
   SpatialBatch batch(double dt) {
@@ -50,7 +53,7 @@ struct SmallBatch {
         stress[k][i] = stress[k][n - 1];
         strain[k][i] = strain[k][n - 1];
       }
-      for (std::size_t k = 0; k < 4; ++k) state[k][i] = state[k][n - 1];
+      for (std::size_t k = 0; k < states; ++k) state[k][i] = state[k][n - 1];
       density[i] = density[n - 1];
     }
     SpatialBatch all;
@@ -60,13 +63,13 @@ struct SmallBatch {
       all.stress[k] = stress[k].data();
       all.strain[k] = strain[k].data();
     }
-    for (std::size_t k = 0; k < 4; ++k) all.state[k] = state[k].data();
+    for (std::size_t k = 0; k < states; ++k) all.state[k] = state[k].data();
     all.density = density.data();
     return all;
   }
 
   std::array<std::array<double, room>, 6> stress{}, strain{};
-  std::array<std::array<double, room>, 4> state{};
+  std::array<std::array<double, room>, states> state{};
   std::array<double, room> density{};
 };
 
@@ -79,15 +82,14 @@ struct DrivenLaw : LawDefaults {
   static constexpr std::array<ParamInfo, 2> parameters{
       {{"rho_p", "rho_p", "kg/m3", "of the grains", Need::optional},
        {"d", "d", "m", "of a grain", Need::optional}}};
-  static constexpr std::array<StateField, 4> state{
-      {{"0", "", "", ""}, {"1", "", "", ""}, {"2", "", "", ""}, {"3", "", "", ""}}};
+  static constexpr std::array<StateField, states> state{};
   template <class T>
   struct Params {
     T rho_p, d;
     static Params from(std::span<const T> t) { return {t[0], t[1]}; }
   };
   template <class T>
-  using State = std::array<T, 4>;
+  using State = std::array<T, states>;
 
   template <class T>
   static bool update(const Params<T>&, const Increment<T, 6>& inc, Sym<T, 6>& stress,
@@ -100,8 +102,8 @@ struct DrivenLaw : LawDefaults {
         return std::size_t{0};
     }();
     const Sym<double, 6> start = plain(stress), strain = plain(inc.strain);
-    std::array<double, 4> at{};
-    for (std::size_t k = 0; k < 4; ++k) at[k] = value(variables[k]);
+    std::array<double, states> at{};
+    for (std::size_t k = 0; k < states; ++k) at[k] = value(variables[k]);
     const double rho = value(inc.density) * std::exp(trace(strain));
     SmallBatch<2 * slopes + 1> points;
     points.put(0, start, at, rho, strain);
@@ -129,7 +131,7 @@ struct DrivenLaw : LawDefaults {
       return x;
     };
     for (std::size_t k = 0; k < 6; ++k) stress.c[k] = after(points.stress[k]);
-    for (std::size_t k = 0; k < 4; ++k) variables[k] = after(points.state[k]);
+    for (std::size_t k = 0; k < states; ++k) variables[k] = after(points.state[k]);
     if (spent != nullptr) {
       const bool memory = driven->law().has_stress_memory;
       spent->plastic = T(memory ? plastic[0] : 0.0);
@@ -147,8 +149,8 @@ struct DrivenLaw : LawDefaults {
   template <class T>
   static T stored_energy(const Params<T>&, const Sym<T, 6>& stress, const State<T>& variables,
                          const T& rho) {
-    std::array<double, 4> at{};
-    for (std::size_t k = 0; k < 4; ++k) at[k] = value(variables[k]);
+    std::array<double, states> at{};
+    for (std::size_t k = 0; k < states; ++k) at[k] = value(variables[k]);
     SmallBatch<1> point;
     point.put(0, plain(stress), at, value(rho), {});
     std::array<double, SmallBatch<1>::room> energy{};
@@ -202,42 +204,16 @@ class MaterialDriver final : public OutsideDriver {
                 const PointTest& test, Curve& curve,
                 std::vector<Curve>& slope_curves) const override {
     const Outcome outcome = drive(numbers, test, curve);
-    slope_curves.resize(slope_width);
-    for (std::size_t k = 0; k < slope_width; ++k) {
-      std::vector<Row<double>>& rows = slope_curves[k].rows;
-      rows.assign(curve.rows.size(), {});
-      const std::span<const double> along = slopes.subspan(k * numbers.size(), numbers.size());
-      // so far that the number that moves most moves by 1e-5 of itself
-      double h = HUGE_VAL;
-      for (std::size_t i = 0; i < numbers.size(); ++i)
-        if (along[i] != 0.0 && numbers[i] != 0.0)
-          h = std::min(h, 1e-5 * std::abs(numbers[i] / along[i]));
-      if (h == HUGE_VAL) continue;
-      Curve up, down;
-      drive(moved(numbers, along, h), test, up);
-      drive(moved(numbers, along, -h), test, down);
-      if (up.rows.size() != rows.size() || down.rows.size() != rows.size()) {
-        curve.outcome.status = Status::unsupported;  // the paths end in different places
-        return curve.outcome;
-      }
-      for (std::size_t r = 0; r < rows.size(); ++r) {
-        for_each_number(up.rows[r], rows[r], [](double x, double& slope) { slope = x; });
-        for_each_number(down.rows[r], rows[r],
-                        [h](double x, double& slope) { slope = (slope - x) / (2.0 * h); });
-      }
-    }
+    // an update is exact to round-off but for what a law of anybody's may iterate: 1e-5 leaves
+    // eleven digits of a difference, and a cut-off error of 1e-10 of the third derivative
+    slopes_by_differences(
+        numbers, slopes, 1e-5, curve,
+        [&](std::span<const double> there, Curve& to) { return drive(there, test, to); },
+        slope_curves);
     return outcome;
   }
 
  private:
-  static std::vector<double> moved(std::span<const double> numbers, std::span<const double> along,
-                                   double h) {
-    std::vector<double> there(numbers.begin(), numbers.end());
-    for (std::size_t i = 0; i < there.size(); ++i)
-      if (along[i] != 0.0) there[i] += h * along[i];
-    return there;
-  }
-
   const LawInfo& info_;
   std::function<void(std::vector<double>&)> complete_;
   Make make_;

@@ -3,6 +3,8 @@
 /// The point driver of a law that another program has registered: everything goes through plain
 /// numbers, so that the law may be compiled for another instruction set than the library.
 
+#include <functional>
+
 #include "models/registry.hpp"
 #include "pointdriver/integrate/simulate.hpp"
 
@@ -30,6 +32,15 @@ class OutsideDriver : public OutsideExtension {
                         const PointTest& test, Curve& curve,
                         std::vector<Curve>& slope_curves) const = 0;
 };
+
+/// The slopes of OutsideDriver::drive() by central differences, for a law that takes no dual
+/// numbers: along each of them so far that no number moves by more than `step` of itself. `curve`
+/// is what drive(numbers, …) has given. Where one side cannot be driven as far as the other,
+/// one-sided; where neither can, 0.
+void slopes_by_differences(std::span<const double> numbers, std::span<const double> slopes,
+                           double step, const Curve& curve,
+                           const std::function<Outcome(std::span<const double>, Curve&)>& drive,
+                           std::vector<Curve>& slope_curves);
 
 /// Throws InputError (key "name") for a law that is unknown, or registered without a point driver.
 const OutsideDriver& outside_driver(const LawInfo& law);

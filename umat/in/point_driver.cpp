@@ -56,45 +56,12 @@ point::Outcome PointDriver::drive(std::span<const double> numbers, std::span<con
                                   const point::PointTest& test, point::Curve& curve,
                                   std::vector<point::Curve>& slope_curves) const {
   const point::Outcome outcome = drive(numbers, test, curve);
-  slope_curves.resize(slope_width);
-  const std::size_t n = numbers.size();
   point::PointTest plain = test;
   plain.settings.check_tangent = false;
-  std::vector<double> moved(n);
-  point::Curve above, below;
-  for (std::size_t k = 0; k < slope_width; ++k) {
-    std::vector<point::Row<double>>& rows = slope_curves[k].rows;
-    rows.assign(curve.rows.size(), {});
-    const std::span<const double> slope = slopes.subspan(k * n, n);
-    // so far along the slope that no number moves by more than slope_step of itself
-    double h = std::numeric_limits<double>::infinity();
-    bool any = false;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (slope[i] == 0.0 || !std::isfinite(numbers[i])) continue;
-      any = true;
-      if (numbers[i] != 0.0) h = std::min(h, slope_step * std::abs(numbers[i] / slope[i]));
-    }
-    if (!any) continue;
-    if (std::isinf(h)) h = slope_step;
-    const auto along = [&](double step, point::Curve& to) {
-      for (std::size_t i = 0; i < n; ++i)
-        moved[i] = slope[i] == 0.0 ? numbers[i] : numbers[i] + step * slope[i];
-      drive(moved, plain, to);
-      // the last row of a path that broke off is none of the others' rows
-      const bool whole = !point::is_failure(to.outcome.status);
-      return whole || to.rows.empty() ? to.rows.size() : to.rows.size() - 1;
-    };
-    const std::size_t reached_above = along(h, above), reached_below = along(-h, below);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      const bool has_above = r < reached_above, has_below = r < reached_below;
-      if (!has_above && !has_below) break;
-      const point::Row<double>& up = has_above ? above.rows[r] : curve.rows[r];
-      point::Row<double> down = has_below ? below.rows[r] : curve.rows[r];
-      const double width = (has_above && has_below ? 2.0 : 1.0) * h;
-      rows[r] = up;
-      point::for_each_number(rows[r], down, [&](double& x, double& y) { x = (x - y) / width; });
-    }
-  }
+  point::slopes_by_differences(
+      numbers, slopes, slope_step, curve,
+      [&](std::span<const double> there, point::Curve& to) { return drive(there, plain, to); },
+      slope_curves);
   return outcome;
 }
 

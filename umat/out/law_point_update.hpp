@@ -4,7 +4,7 @@
 /// points has it, and once more in dual numbers, whose derivatives are the consistent tangent
 /// (Simo & Taylor 1985: that of the discrete update, which keeps Newton's method quadratic).
 
-#include "models/dual.hpp"
+#include "models/point_tangent.hpp"
 #include "umat/out/point_update.hpp"
 
 namespace repose::umat {
@@ -56,7 +56,8 @@ class LawPointUpdate final : public PointUpdate {
     if (L::update(plain_, inc, stress, now, &spent) || !(dt >= 0.0) || !(inc.density > 0.0) ||
         !finite(inc.density) || !finite(contract(point.stress, point.stress)))
       return false;
-    if (!tangent_of(P, strain, dt, point, state, tangent)) return false;
+    if (!point_tangent<L, N>(P, strain, dt, point.density, point.stress, state, tangent))
+      return false;
     for (const double x : {spent.plastic, spent.viscous})
       if (!finite(x)) return false;
 
@@ -74,33 +75,6 @@ class LawPointUpdate final : public PointUpdate {
         for (std::size_t k = 0; k < derived.size(); ++k) derived[k] = values[k];
       }
     }
-    return true;
-  }
-
-  template <int N>
-  static bool tangent_of(const Params<Dual<N>>& P, const Sym<double, N>& strain, double dt,
-                         const Point<N>& point, std::span<const double> state,
-                         Tangent<N>& tangent) {
-    using D = Dual<N>;
-    Increment<D, N> inc;
-    Sym<D, N> stress;
-    State<D> now{};
-    for (int k = 0; k < N; ++k) {
-      inc.strain[k] = D(strain[k], k);
-      stress[k] = D(point.stress[k]);
-    }
-    for (std::size_t k = 0; k < L::state.size(); ++k) now[k] = D(state[k]);
-    inc.dt = D(dt);
-    inc.density = D(point.density) * exp_pair(D(-trace(inc.strain))).whole;
-    if (L::update(P, inc, stress, now)) return false;
-    Tangent<N> found;
-    for (int i = 0; i < N; ++i)
-      for (int j = 0; j < N; ++j) {
-        const double slope = stress[i].v[j];
-        if (!finite(slope)) return false;
-        found[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = slope;
-      }
-    tangent = found;
     return true;
   }
 

@@ -7,6 +7,7 @@
 
 #include "models/law.hpp"
 #include "models/material.hpp"
+#include "models/tangent.hpp"
 
 namespace repose::umat {
 
@@ -19,11 +20,6 @@ struct Point {
   /// in viscous flow
   double stored = 0.0, plastic = 0.0, viscous = 0.0;
 };
-
-/// ∂σ_i/∂Δε_j [i][j] with the tensor's component ε_xy for a shear, not γ_xy = 2ε_xy [Pa].
-template <int N>
-using Tangent =
-    std::array<std::array<double, static_cast<std::size_t>(N)>, static_cast<std::size_t>(N)>;
 
 /// A law with its parameters.
 class PointUpdate {
