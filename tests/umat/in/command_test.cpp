@@ -241,6 +241,8 @@ TEST_F(UmatCommand, FailureInARunKeepsItsState) {
     EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
     EXPECT_NE(said.text.find("step 40"), std::string::npos) << said.text;
     EXPECT_NE(said.text.find("libmisbehaving.so"), std::string::npos) << said.text;
+    EXPECT_EQ(said.text.find("courant"), std::string::npos) << "no smaller step helps\n"
+                                                            << said.text;
     EXPECT_EQ(summary("run" + deed).at("status"), "failed");
     EXPECT_FALSE(content_of(scratch.path() / ("run" + deed) / "series.csv").empty());
     EXPECT_TRUE(std::filesystem::exists(scratch.path() / ("run" + deed) / "checkpoint.h5"));
