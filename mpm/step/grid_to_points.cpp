@@ -216,7 +216,8 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
         "the stress of {} could not be updated for the strain increment xx {:.6g}, yy {:.6g}, xy "
         "{:.6g} in {:.3g} s{}",
         describe(points, body, range.begin + k), e[0][k], e[1][k], e[3][k], dt,
-        report.reason.empty() ? "" : ": " + report.reason);
+        report.reason.empty() ? ""
+                              : ": " + report.reason + ".");  // a cause of its own: close_ledger()
   }
   if constexpr (dim == 2) {
     if (points.splits_stress()) split_stress(points, range, batch);

@@ -83,9 +83,12 @@ void Simulation::Impl<dim>::close_ledger() {
   const bool sound = std::isfinite(kinetic) && kinetic <= 2.0 * highest_energy &&
                      (scene.dt || stable_step(seen(), scene.courant, grid.h()) >= 1e-9 * first_dt);
   must_sort = must_sort || failure != nullptr || !sound;  // drift may be NaN: look at every point
-  if (failure != nullptr)
-    throw NumericalFailure(
-        fmt::format("step {} at t = {:.6g} s: {}: {}", steps, time, *failure, cause));
+  if (failure != nullptr) {
+    // a sentence that has ended has told its cause
+    const bool told = failure->ends_with('.');
+    throw NumericalFailure(fmt::format("step {} at t = {:.6g} s: {}{}{}", steps, time, *failure,
+                                       told ? "" : ": ", told ? "" : cause));
+  }
   const char* const unit = dim == 2 ? "J/m" : "J";
   if (!sound)
     throw NumericalFailure(fmt::format(

@@ -18,9 +18,9 @@ struct Said {
   std::string text;
 };
 
-Said repose(const std::string& arguments) {
+Said repose(const std::string& arguments, const std::string& before = "") {
   Said said;
-  FILE* const pipe = ::popen((REPOSE_COMMAND " " + arguments + " 2>&1").c_str(), "r");
+  FILE* const pipe = ::popen((before + REPOSE_COMMAND " " + arguments + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return said;
   std::array<char, 4096> part{};
   while (std::fgets(part.data(), part.size(), pipe) != nullptr) said.text += part.data();
@@ -200,6 +200,21 @@ TEST_F(UmatCommand, SceneDoesNotDependOnThreads) {
   EXPECT_LT(std::abs(summary("1").at("energy_error").get<double>()), 1e-2);
 }
 
+// Ctrl-C is the run's business and not its library's: it leaves a checkpoint and goes on from
+// there.
+TEST_F(UmatCommand, InterruptedSceneGoesOnToTheSameBits) {
+  const std::string file = write("scene.toml", with(scene, "end_time = 0.02", "end_time = 1.5"));
+  ASSERT_EQ(repose("run " + file + " --no-plot -o " + folder("whole")).code, 0);
+  const Said cut = repose("run " + file + " --no-plot -o " + folder("cut"),
+                          "timeout --preserve-status -s INT 0.4 ");
+  ASSERT_EQ(cut.code, 130) << "it was to take longer than 0.4 s\n" << cut.text;
+  const std::string series = content_of(scratch.path() / "whole/series.csv");
+  EXPECT_NE(content_of(scratch.path() / "cut/series.csv"), series);
+  const Said rest = repose("run " + file + " --no-plot --resume -o " + folder("cut"));
+  ASSERT_EQ(rest.code, 0) << rest.text;
+  EXPECT_EQ(content_of(scratch.path() / "cut/series.csv"), series);
+}
+
 TEST_F(UmatCommand, SceneNeedsADensityAndNoPressureAveraging) {
   const Said density = repose("check " + write("scene.toml", with(scene, "rho_0 = 1500.0\n", "")));
   EXPECT_EQ(density.code, 2);
@@ -226,10 +241,11 @@ TEST_F(UmatCommand, FailureInARunKeepsItsState) {
     EXPECT_NE(said.text.find(words), std::string::npos) << said.text;
     EXPECT_NE(said.text.find("step 40"), std::string::npos) << said.text;
     EXPECT_NE(said.text.find("libmisbehaving.so"), std::string::npos) << said.text;
+    EXPECT_EQ(said.text.find("courant"), std::string::npos) << "no smaller step helps\n"
+                                                            << said.text;
     EXPECT_EQ(summary("run" + deed).at("status"), "failed");
     EXPECT_FALSE(content_of(scratch.path() / ("run" + deed) / "series.csv").empty());
-    EXPECT_TRUE(std::filesystem::exists(scratch.path() / ("run" + deed) / "checkpoint.h5") ||
-                !std::filesystem::is_empty(scratch.path() / ("run" + deed)));
+    EXPECT_TRUE(std::filesystem::exists(scratch.path() / ("run" + deed) / "checkpoint.h5"));
   }
 }
 
