@@ -14,14 +14,18 @@ namespace {
 py::dict solve_fit(const input::InputFile& given, std::uint64_t seed, int threads,
                    const std::string& cache, const py::object& progress) {
   input::require_kind(given, input::FileKind::fit, "fit");
-  input::FitFile file = input::read_fit(given, seed, cache);
-  calibration::Problem problem(calibration::ParameterSpace(file.free), file.targets, file.balance);
   std::optional<py::error_already_set> thrown;
   std::atomic<bool> stop = false;
+  input::FitFile file;
   study::SearchRequest request;
   study::Solution solution;
+  std::string predictions;
   {
+    // all of it without the lock: threads of the library may wait for it, in a law of Python
     const py::gil_scoped_release released;
+    file = input::read_fit(given, seed, cache);
+    calibration::Problem problem(calibration::ParameterSpace(file.free), file.targets,
+                                 file.balance);
     const io::InterruptGuard interrupt;
     std::optional<tbb::global_control> limit;
     if (threads > 0)
@@ -40,6 +44,8 @@ py::dict solve_fit(const input::InputFile& given, std::uint64_t seed, int thread
     };
     solution = study::solve(file, problem, request);
     stop = stop || interrupt.requested();
+    if (!stop && !solution.result.starts.empty())
+      predictions = study::predictions_csv(file, problem, solution.result);
   }
   if (thrown) throw py::error_already_set(*thrown);
   if (stop) throw_interrupted();
@@ -49,7 +55,7 @@ py::dict solve_fit(const input::InputFile& given, std::uint64_t seed, int thread
   all["name"] = file.name;
   if (solution.result.starts.empty()) return all;
   all["report"] = solution.report.dump();
-  all["predictions"] = study::predictions_csv(file, problem, solution.result);
+  all["predictions"] = predictions;
   all["fitted_toml"] = study::fitted_toml(file, solution.result);
   return all;
 }

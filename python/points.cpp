@@ -204,25 +204,6 @@ py::tuple sensitivities(const PointTest& test, const std::vector<std::string>& p
 
 void bind_point(py::module_& module) {
   using Row = point::Row<double>;
-  py::class_<PointTest>(module, "PointTest", "A point test that was read and checked.")
-      .def(py::init<input::InputFile>(), py::arg("input"))
-      .def_property_readonly("name", [](const PointTest& t) { return t.file().name; })
-      .def_property_readonly("law", [](const PointTest& t) { return t.file().law.name; })
-      .def_property_readonly("law_toml",
-                             [](const PointTest& t) { return input::law_lines(t.file().law); })
-      .def_property_readonly("method",
-                             [](const PointTest& t) {
-                               return std::string(point::name_of(point::method_for(
-                                   find_law(t.file().law), t.file().test.settings.method)));
-                             })
-      .def_property_readonly(
-          "stages", [](const PointTest& t) { return t.file().test.path.places().back().stage; })
-      .def("with_parameters", &PointTest::with, py::arg("values"),
-           "The same test with other values of parameters of its law.")
-      .def(
-          "run", [](const PointTest& t) { return std::make_unique<Driven>(t); }, "Drives it.")
-      .def("sensitivities", &sensitivities, py::arg("parameters"), py::arg("columns"),
-           "Columns and their derivatives, (rows, parameters) each.");
   py::class_<Driven>(module, "Driven", "A point test as it was driven.")
       .def_property_readonly("columns", &Driven::columns)
       .def("column", &Driven::column, py::arg("name"), "A column of curve.csv by its name.")
@@ -247,6 +228,25 @@ void bind_point(py::module_& module) {
       .def("summary", &Driven::summary, "summary.json, as text.")
       .def("csv", &Driven::csv, "The text of curve.csv.")
       .def("picture", &Driven::picture, py::arg("path"), "Draws curve.svg with gnuplot.");
+  py::class_<PointTest>(module, "PointTest", "A point test that was read and checked.")
+      .def(py::init<input::InputFile>(), py::arg("input"))
+      .def_property_readonly("name", [](const PointTest& t) { return t.file().name; })
+      .def_property_readonly("law", [](const PointTest& t) { return t.file().law.name; })
+      .def_property_readonly("law_toml",
+                             [](const PointTest& t) { return input::law_lines(t.file().law); })
+      .def_property_readonly("method",
+                             [](const PointTest& t) {
+                               return std::string(point::name_of(point::method_for(
+                                   find_law(t.file().law), t.file().test.settings.method)));
+                             })
+      .def_property_readonly(
+          "stages", [](const PointTest& t) { return t.file().test.path.places().back().stage; })
+      .def("with_parameters", &PointTest::with, py::arg("values"),
+           "The same test with other values of parameters of its law.")
+      .def(
+          "run", [](const PointTest& t) { return std::make_unique<Driven>(t); }, "Drives it.")
+      .def("sensitivities", &sensitivities, py::arg("parameters"), py::arg("columns"),
+           "Columns and their derivatives, (rows, parameters) each.");
 }
 
 }  // namespace repose::python

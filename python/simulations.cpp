@@ -86,7 +86,10 @@ class Simulation {
   py::dict diagnostics() const {
     const std::size_t dimensions = simulation_->scene().dimensions();
     const std::vector<std::string> names = study::series_columns(dimensions);
-    const std::vector<double> values = study::series_values(simulation_->diagnostics(), dimensions);
+    const std::vector<double> values = [&] {
+      const py::gil_scoped_release released;
+      return study::series_values(simulation_->diagnostics(), dimensions);
+    }();
     py::dict row;
     for (std::size_t k = 0; k < names.size(); ++k) row[py::str(names[k])] = values[k];
     return row;
@@ -99,6 +102,7 @@ class Simulation {
 
   void set_gravity(double gravity, double tilt_deg) {
     require_whole();
+    const py::gil_scoped_release released;
     simulation_->set_gravity(gravity, tilt_deg);
   }
 
@@ -155,7 +159,10 @@ class Simulation {
 py::dict estimate(input::InputFile file) {
   input::require_kind(file, input::FileKind::scene, "check");
   const input::SceneFile scene = input::read_scene(file);
-  const mpm::Estimate e = reading(file, [&] { return mpm::count_estimate(scene.scene); });
+  const mpm::Estimate e = reading(file, [&] {
+    const py::gil_scoped_release released;
+    return mpm::count_estimate(scene.scene);
+  });
   py::dict all;
   all["points"] = e.points;
   all["live_cells"] = e.live_cells;

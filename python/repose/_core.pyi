@@ -108,7 +108,7 @@ class PointTest:
     def method(self) -> str: ...
     @property
     def name(self) -> str: ...
-    def run(self: PointTest) -> repose::python::(anonymous namespace)::Driven:
+    def run(self: PointTest) -> Driven:
         """Drives it."""
     def sensitivities(self: PointTest, parameters: list[str], columns: list[str]) -> tuple:
         """Columns and their derivatives, (rows, parameters) each."""

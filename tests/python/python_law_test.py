@@ -1,5 +1,7 @@
 """Laws written in Python: against exact results, in points, scenes and fits, and when they fail."""
 
+import os
+import tempfile
 import traceback
 import unittest
 
@@ -67,6 +69,21 @@ class Points(unittest.TestCase):
         exact = 0.01 * np.array([9 * G * G, 27 * K * K]) / (3 * K + G) ** 2
         # differences over 1e-5: their square, and 1e-12 of 2e4 Pa over 2e-5 of a parameter
         np.testing.assert_allclose(slopes, exact, rtol=1e-7)
+
+    def test_is_fitted_side_by_side(self):
+        E = 9 * K * G / (3 * K + G)
+        with tempfile.TemporaryDirectory() as folder:
+            data = os.path.join(folder, "drained.csv")
+            with open(data, "w", encoding="utf-8") as file:
+                file.write("eps_a,q_Pa\n" + "".join(f"{e},{E * e}\n" for e in (0.002, 0.004, 0.006)))
+            fit = repose.fit({"law": {"name": "python_elastic", "K": K},
+                              "fit": {"G": {"lower": 1e5, "upper": 9e5}},
+                              "target": [{"name": "drained", "data": data, "x": "eps_a", "y": "q_Pa",
+                                          "noise": {"q_Pa": 10.0}, "initial": {"p": 1e4},
+                                          "test": {"kind": "triaxial", "drainage": "drained"}}],
+                              "solver": {"starts": 3}}, progress=lambda *_: None)
+        # data without noise, met to the square of the search's last step
+        self.assertAlmostEqual(fit.parameters["G"] / G, 1.0, delta=1e-6)
 
     def test_mistakes(self):
         with self.assertRaisesRegex(repose.InputError, "at most K"):
