@@ -102,9 +102,10 @@ io::ExitCode parse_and_run(std::span<const char* const> arguments) {
   root.set_help_flag("-h,--help", "Show this and exit");
   root.set_version_flag("--version", std::string("repose ") + version_string);
   std::string set;  // taken out of the arguments before they are parsed (other_sets.hpp)
-  root.add_option("--instruction-set", set,
-                  "Before the verb: avx512 or avx2, where both are installed; default: the fastest "
-                  "that the machine has")
+  root.add_option(
+          "--instruction-set", set,
+          "Before the verb: avx512 or avx2, where both are installed (on ARM there is neon); "
+          "default: the fastest that the machine has")
       ->type_name("SET");
   root.require_subcommand(1);
   root.footer(examples);

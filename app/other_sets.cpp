@@ -60,6 +60,8 @@ std::vector<InstructionSet> instruction_sets() {
                   __builtin_cpu_supports("avx512vl");
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   return {{"avx512", "x86-64-v4", v4}, {"avx2", "x86-64-v3", v3}};
+#elif defined(__aarch64__)
+  return {{"neon", "armv8-a", true}};  // every one of these processors has it
 #else
   return {};
 #endif

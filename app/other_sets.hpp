@@ -11,7 +11,7 @@ namespace repose::app {
 /// An instruction set, and the folder under lib/repose that its program is installed in.
 struct InstructionSet {
   const char* name;   ///< as models/instruction_set.hpp says it
-  const char* level;  ///< of the x86-64 psABI
+  const char* level;  ///< of the x86-64 psABI, or -march of another processor
   bool here;          ///< this machine has it
 };
 /// The fastest first.

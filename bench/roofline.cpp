@@ -6,6 +6,7 @@
 #include <ctime>
 #include <map>
 #include <stdexcept>
+#include <type_traits>
 
 #include <xsimd/xsimd.hpp>
 
@@ -58,8 +59,10 @@ double measured_peak() {
   return 2.0 * static_cast<double>(chains * Register::size) * rounds / seconds;
 }
 
-using Quad = xsimd::make_sized_batch<double, 4>::type;
 using Widest = xsimd::batch<double>;
+/// Four doubles where a register holds them.
+using Quad = std::conditional_t<Widest::size == 2, Widest,
+                                typename xsimd::make_sized_batch<double, 4>::type>;
 
 double measured_triad(double bytes) {
   const auto n = static_cast<std::size_t>(bytes / 24.0) / 64 * 64;

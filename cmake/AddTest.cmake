@@ -1,7 +1,8 @@
 # repose_add_test(name LABEL unit|contract|verification|regression [NIGHTLY]
 #                 SOURCES a.cpp ... [LIBS targets...])
 # One GoogleTest executable; every TEST in it is a ctest test with that label. NIGHTLY adds the label
-# "nightly", which scripts/test leaves out unless it is asked for.
+# "nightly", which scripts/test leaves out unless it is asked for. The target FOLDER_LABEL_tests, as in
+# models_unit_tests, builds those of a folder and label that are not.
 include(GoogleTest)
 
 function(repose_add_test name)
@@ -22,6 +23,13 @@ function(repose_add_test name)
   # what is tested is compiled as it is for users; what tests it need not be
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   repose_precompile(${name} test)
+  if(NOT arg_NIGHTLY)
+    get_filename_component(folder ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+    if(NOT TARGET ${folder}_${arg_LABEL}_tests)
+      add_custom_target(${folder}_${arg_LABEL}_tests)
+    endif()
+    add_dependencies(${folder}_${arg_LABEL}_tests ${name})
+  endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${arg_LABEL})
   if(arg_NIGHTLY)
     # gtest_discover_tests cannot pass a list of labels on, so a second file that ctest reads does.

@@ -23,6 +23,8 @@ const char* instruction_set() {
   if (__builtin_cpu_supports("avx512f")) return "avx512f";
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "avx2";
   return "x86-64";
+#elif defined(__aarch64__)
+  return "aarch64";
 #else
   return "another processor";
 #endif

@@ -6,8 +6,10 @@
 
 namespace repose {
 
-/// "avx512" (eight doubles in a register) or "avx2" (four). Results of one set are the same bits on
-/// every machine that has it; between sets they differ by round-off and what grows from it.
+/// "avx512" (eight doubles in a register), "avx2" (four) or, on 64-bit ARM, "neon" (two); "sse2"
+/// (two) only where REPOSE_MARCH asks for it. Results of one set are the same bits on every machine
+/// that has it and the same C library; between sets they differ by round-off and what grows from
+/// it.
 std::string_view instruction_set();
 
 }  // namespace repose

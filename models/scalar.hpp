@@ -25,8 +25,8 @@ namespace repose {
 /// name says: code for two of them may stand in one program.
 using Pack = xsimd::batch<double>;
 
-/// Two packs that go through a law together. A law that iterates is a chain of operations each of
-/// which waits for the one before; a second chain beside it fills the waiting.
+/// Two packs that go through the same operations. A law that iterates is a chain of operations each
+/// of which waits for the one before; a second chain beside it fills the waiting.
 template <class P>
 struct TwinOf {
   static constexpr std::size_t size = 2 * P::size;
@@ -35,12 +35,22 @@ struct TwinOf {
   TwinOf() = default;
   TwinOf(const P& first, const P& second) : a(first), b(second) {}
   explicit TwinOf(double x) : a(x), b(x) {}
+  TwinOf(double c0, double c1, double c2, double c3) requires(P::size == 2)
+      : a({c0, c1}),
+        b({c2, c3}) {}
   static TwinOf load_unaligned(const double* from) {
     return {P::load_unaligned(from), P::load_unaligned(from + P::size)};
+  }
+  static TwinOf load_aligned(const double* from) {
+    return {P::load_aligned(from), P::load_aligned(from + P::size)};
   }
   void store_unaligned(double* to) const {
     a.store_unaligned(to);
     b.store_unaligned(to + P::size);
+  }
+  void store_aligned(double* to) const {
+    a.store_aligned(to);
+    b.store_aligned(to + P::size);
   }
 
   /// What a comparison of two gives.
@@ -61,6 +71,10 @@ struct TwinOf {
   friend Mask operator<=(const TwinOf& x, const TwinOf& y) { return {x.a <= y.a, x.b <= y.b}; }
   friend Mask operator>=(const TwinOf& x, const TwinOf& y) { return {x.a >= y.a, x.b >= y.b}; }
   friend Mask operator==(const TwinOf& x, const TwinOf& y) { return {x.a == y.a, x.b == y.b}; }
+  friend TwinOf fma(const TwinOf& x, const TwinOf& y, const TwinOf& z) {
+    return {xsimd::fma(x.a, y.a, z.a), xsimd::fma(x.b, y.b, z.b)};
+  }
+  friend TwinOf floor(const TwinOf& x) { return {xsimd::floor(x.a), xsimd::floor(x.b)}; }
   friend TwinOf sqrt(const TwinOf& x) { return {xsimd::sqrt(x.a), xsimd::sqrt(x.b)}; }
   friend TwinOf exp(const TwinOf& x) { return {xsimd::exp(x.a), xsimd::exp(x.b)}; }
   friend TwinOf expm1(const TwinOf& x) { return {xsimd::expm1(x.a), xsimd::expm1(x.b)}; }

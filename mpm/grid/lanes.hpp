@@ -3,8 +3,10 @@
 /// What the transfers do with SIMD registers beyond arithmetic: stencil rows side by side, and a
 /// row of a tile as a table that lanes look their nodes up in.
 
+#include <array>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 
 #include <xsimd/xsimd.hpp>
 
@@ -12,11 +14,13 @@
 
 namespace repose::mpm {
 
-/// Four doubles: one row of a stencil.
-using Row = xsimd::make_sized_batch<double, 4>::type;
+/// Four doubles: one row of a stencil. One register, or two where a register has two lanes (NEON).
+using Row =
+    std::conditional_t<Pack::size == 2, Twin, typename xsimd::make_sized_batch<double, 4>::type>;
+static_assert(Row::size == 4);
 
-/// Stencil rows that fit side by side in one register.
-constexpr std::size_t rows_per_pack = Pack::size / Row::size;
+/// As many points as both a register and a row can hold side by side.
+using RowPoints = std::conditional_t<(Pack::size < Row::size), Pack, Row>;
 
 /// Whole numbers below 2^32 held as doubles, to be stored where whole_number() reads them: adding
 /// 2^52 leaves them in the lowest bits.
@@ -29,6 +33,8 @@ inline std::uint32_t whole_number(double bits) {
 }
 
 #if defined(__AVX512F__)
+/// Stencil rows that fit side by side in one register.
+constexpr std::size_t rows_per_pack = Pack::size / Row::size;
 static_assert(rows_per_pack == 2);
 
 /// A row of x and a row of y that go through the same operations: the two halves of a register.
@@ -89,8 +95,7 @@ class RowTable {
   __m512d low_, high_;
 };
 #else
-static_assert(rows_per_pack == 1);
-
+/// A row of x and a row of y that go through the same operations.
 class RowPair {
  public:
   RowPair(const Row& x, const Row& y) : x_(x), y_(y) {}
@@ -100,25 +105,49 @@ class RowPair {
     return {Row(a.x_ - b.x_), Row(a.y_ - b.y_)};
   }
   friend RowPair fma(const RowPair& a, const RowPair& b, const RowPair& c) {
-    return {xsimd::fma(a.x_, b.x_, c.x_), xsimd::fma(a.y_, b.y_, c.y_)};
+    return {fma(a.x_, b.x_, c.x_), fma(a.y_, b.y_, c.y_)};
   }
   Row x() const { return x_; }
   Row y() const { return y_; }
-  Pack x_repeated() const { return Pack(x_.data); }
-  template <int j>
-  Pack y_spread() const {
-    return Pack(__builtin_shufflevector(y_.data, y_.data, j, j, j, j));
-  }
 
  private:
   Row x_, y_;
 };
-template <int k>
-Row row_of(const Pack& p) {
-  static_assert(k == 0);
-  return Row(p.data);
+#endif
+
+#if defined(__AVX__)
+/// Columns of the rows of as many points as RowPoints has: number k is lane k of every row.
+[[gnu::always_inline]] inline std::array<Row, 4> columns_of(const std::array<Row, 4>& rows) {
+  const auto low_01 = __builtin_shufflevector(rows[0].data, rows[1].data, 0, 4, 2, 6);
+  const auto high_01 = __builtin_shufflevector(rows[0].data, rows[1].data, 1, 5, 3, 7);
+  const auto low_23 = __builtin_shufflevector(rows[2].data, rows[3].data, 0, 4, 2, 6);
+  const auto high_23 = __builtin_shufflevector(rows[2].data, rows[3].data, 1, 5, 3, 7);
+  return {Row(__builtin_shufflevector(low_01, low_23, 0, 1, 4, 5)),
+          Row(__builtin_shufflevector(high_01, high_23, 0, 1, 4, 5)),
+          Row(__builtin_shufflevector(low_01, low_23, 2, 3, 6, 7)),
+          Row(__builtin_shufflevector(high_01, high_23, 2, 3, 6, 7))};
 }
 
+/// Lane i of row k and lane k of row i change places.
+[[gnu::always_inline]] inline void transpose(std::array<Row, 4>& rows) { rows = columns_of(rows); }
+
+/// Lane k of the result is the sum of row k.
+inline Row sums_of(const std::array<Row, 4>& rows) { return xsimd::haddp(rows.data()); }
+#else
+[[gnu::always_inline]] inline std::array<Pack, 4> columns_of(const std::array<Row, 2>& rows) {
+  return {xsimd::zip_lo(rows[0].a, rows[1].a), xsimd::zip_hi(rows[0].a, rows[1].a),
+          xsimd::zip_lo(rows[0].b, rows[1].b), xsimd::zip_hi(rows[0].b, rows[1].b)};
+}
+[[gnu::always_inline]] inline void transpose(std::array<Row, 4>& rows) {
+  const std::array<Pack, 4> first = columns_of({rows[0], rows[1]});
+  const std::array<Pack, 4> second = columns_of({rows[2], rows[3]});
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = Row(first[k], second[k]);
+}
+inline Row sums_of(const std::array<Row, 4>& rows) {
+  const Pack half[4] = {rows[0].a + rows[0].b, rows[1].a + rows[1].b, rows[2].a + rows[2].b,
+                        rows[3].a + rows[3].b};
+  return {xsimd::haddp(half), xsimd::haddp(half + 2)};
+}
 #endif
 
 /// The smallest and the largest lane.

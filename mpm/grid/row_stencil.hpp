@@ -1,9 +1,9 @@
 #pragma once
 /// \file
 /// The way from a tile to the points of a pack where looking nodes up in registers
-/// (pack_stencil.hpp) would be a gather from memory: the lanes are the nodes of a stencil row while
-/// a field is summed across rows and planes, and become points, four at a time, for the sum along
-/// the row.
+/// (table_stencil.hpp) would be a gather from memory: the lanes are the nodes of a stencil row
+/// while a field is summed across rows and planes, and become points, four at a time (two where a
+/// register has no more), for the sum along the row.
 ///
 /// Distances to a point are whole numbers k − 1 = −1 … 2 from its anchor less its own t: sums with
 /// whole numbers are made of the products that are there already, and t times the value is taken
@@ -16,18 +16,6 @@
 #include "mpm/grid/unrolled.hpp"
 
 namespace repose::mpm {
-
-/// Columns of four rows: lane i of row k and lane k of row i change places.
-[[gnu::always_inline]] inline void transpose(std::array<Row, 4>& rows) {
-  const auto low_01 = __builtin_shufflevector(rows[0].data, rows[1].data, 0, 4, 2, 6);
-  const auto high_01 = __builtin_shufflevector(rows[0].data, rows[1].data, 1, 5, 3, 7);
-  const auto low_23 = __builtin_shufflevector(rows[2].data, rows[3].data, 0, 4, 2, 6);
-  const auto high_23 = __builtin_shufflevector(rows[2].data, rows[3].data, 1, 5, 3, 7);
-  rows[0] = Row(__builtin_shufflevector(low_01, low_23, 0, 1, 4, 5));
-  rows[1] = Row(__builtin_shufflevector(high_01, high_23, 0, 1, 4, 5));
-  rows[2] = Row(__builtin_shufflevector(low_01, low_23, 2, 3, 6, 7));
-  rows[3] = Row(__builtin_shufflevector(high_01, high_23, 2, 3, 6, 7));
-}
 
 /// The stencils of a pack of points in a tile.
 template <class Kernel, int dim>
@@ -61,11 +49,11 @@ class RowStencil {
             std::array<Pack, count>& values) const {
     std::array<std::array<Lanes, 1 + dim>, n> sums;
     std::array<Lanes, count> value_sums;
-    for (std::size_t first = 0; first < Pack::size; first += Row::size) {
+    for (std::size_t first = 0; first < Pack::size; first += at_a_time) {
       // by field, then by point
-      std::array<std::array<Row, 4>, n> s, s_y, s_z;
-      std::array<std::array<Row, 4>, count> v;
-      for (std::size_t k = 0; k < Row::size; ++k) {
+      std::array<std::array<Row, at_a_time>, n> s, s_y, s_z;
+      std::array<std::array<Row, at_a_time>, count> v;
+      for (std::size_t k = 0; k < at_a_time; ++k) {
         const std::size_t lane = first + k;
         const std::size_t node = whole_number(first_node_[lane]);
         const Across y(*this, 1, lane);
@@ -96,22 +84,19 @@ class RowStencil {
         }
       }
       unrolled<n>([&](auto f) REPOSE_INLINE {
-        const auto put = [&](std::size_t which, const Row& x)
+        const auto put = [&](std::size_t which, const RowPoints& x)
                              REPOSE_INLINE { x.store_aligned(sums[f][which].data() + first); };
-        transpose(s[f]);
-        transpose(s_y[f]);
-        const Row value = along(w_[0], s[f], first);
+        const Columns columns = columns_of(s[f]);
+        const Columns columns_y = columns_of(s_y[f]);
+        const RowPoints value = along(w_[0], columns, first);
         put(0, value);
-        put(1, from_anchor(0, slope_along(s[f], first), value, first));
-        put(2, from_anchor(1, along(w_[0], s_y[f], first), value, first));
-        if constexpr (dim == 3) {
-          transpose(s_z[f]);
-          put(3, from_anchor(2, along(w_[0], s_z[f], first), value, first));
-        }
+        put(1, from_anchor(0, slope_along(columns, first), value, first));
+        put(2, from_anchor(1, along(w_[0], columns_y, first), value, first));
+        if constexpr (dim == 3)
+          put(3, from_anchor(2, along(w_[0], columns_of(s_z[f]), first), value, first));
       });
       unrolled<count>([&](auto f) REPOSE_INLINE {
-        transpose(v[f]);
-        along(w_[0], v[f], first).store_aligned(value_sums[f].data() + first);
+        along(w_[0], columns_of(v[f]), first).store_aligned(value_sums[f].data() + first);
       });
     }
     unrolled<n>([&](auto f) REPOSE_INLINE {
@@ -125,6 +110,8 @@ class RowStencil {
 
  private:
   static constexpr std::size_t rows = Kernel::rows;
+  static constexpr std::size_t at_a_time = RowPoints::size;
+  using Columns = std::array<RowPoints, 4>;  ///< a node of the row each
   static constexpr std::size_t plane_nodes =
       static_cast<std::size_t>(tile_stride) * (dim == 2 ? 1 : Shape<dim>::tile[1]);
   /// One number per point of the pack.
@@ -142,7 +129,7 @@ class RowStencil {
     }
     REPOSE_INLINE Row value(const std::array<Row, rows>& f) const {
       Row s = w_[0] * f[0];
-      for (std::size_t k = 1; k < rows; ++k) s = xsimd::fma(w_[k], f[k], s);
+      for (std::size_t k = 1; k < rows; ++k) s = fma(w_[k], f[k], s);
       return s;
     }
     /// Σ w f, and with it Σ w f (k − 1) or Σ f ∂w/∂ξ.
@@ -150,11 +137,11 @@ class RowStencil {
       if constexpr (Kernel::spline_gradient) {
         s = value(f);
         s_d = slope_[0] * f[0];
-        for (std::size_t k = 1; k < rows; ++k) s_d = xsimd::fma(slope_[k], f[k], s_d);
+        for (std::size_t k = 1; k < rows; ++k) s_d = fma(slope_[k], f[k], s_d);
       } else {
         const Row first = w_[0] * f[0];
         const Row third = w_[2] * f[2];
-        s = xsimd::fma(w_[1], f[1], first) + third;
+        s = fma(w_[1], f[1], first) + third;
         s_d = third - first;
         if constexpr (rows == 4) {
           const Row fourth = w_[3] * f[3];
@@ -180,25 +167,25 @@ class RowStencil {
   };
 
   /// Σ w f along x with the points in the lanes.
-  REPOSE_INLINE static Row along(const std::array<Lanes, 4>& w, const std::array<Row, 4>& f,
-                                 std::size_t first) {
-    Row s = Row::load_aligned(w[0].data() + first) * f[0];
+  REPOSE_INLINE static RowPoints along(const std::array<Lanes, 4>& w, const Columns& f,
+                                       std::size_t first) {
+    RowPoints s = RowPoints::load_aligned(w[0].data() + first) * f[0];
     for (std::size_t k = 1; k < rows; ++k)
-      s = xsimd::fma(Row::load_aligned(w[k].data() + first), f[k], s);
+      s = fma(RowPoints::load_aligned(w[k].data() + first), f[k], s);
     return s;
   }
-  REPOSE_INLINE Row slope_along(const std::array<Row, 4>& f, std::size_t first) const {
+  REPOSE_INLINE RowPoints slope_along(const Columns& f, std::size_t first) const {
     if constexpr (Kernel::spline_gradient) return along(slope_[0], f, first);
-    const auto w = [&](std::size_t k) { return Row::load_aligned(w_[0][k].data() + first); };
-    Row s = xsimd::fms(w(2), f[2], w(0) * f[0]);
-    if constexpr (rows == 4) s = xsimd::fma(w(3), f[3] + f[3], s);
+    const auto w = [&](std::size_t k) { return RowPoints::load_aligned(w_[0][k].data() + first); };
+    RowPoints s = fms(w(2), f[2], w(0) * f[0]);
+    if constexpr (rows == 4) s = fma(w(3), f[3] + f[3], s);
     return s;
   }
   /// From whole numbers to distances.
-  REPOSE_INLINE Row from_anchor(std::size_t axis, const Row& s_d, const Row& value,
-                                std::size_t first) const {
+  REPOSE_INLINE RowPoints from_anchor(std::size_t axis, const RowPoints& s_d,
+                                      const RowPoints& value, std::size_t first) const {
     if constexpr (Kernel::spline_gradient) return s_d;
-    return xsimd::fnma(Row::load_aligned(t_[axis].data() + first), value, s_d);
+    return xsimd::fnma(RowPoints::load_aligned(t_[axis].data() + first), value, s_d);
   }
 
   std::array<std::array<Lanes, 4>, dim> w_, slope_;

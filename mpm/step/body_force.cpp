@@ -18,12 +18,12 @@ void body_force_to_tile(const PointSet& points, const SlotRange& range, std::spa
     const auto place = static_cast<std::size_t>((anchor_y - 1.0 - origin[1]) * tile_stride +
                                                 anchor_x - 1.0 - origin[0]);
     const Row w_m = weights.w.x() * Row(points[MASS][s]);
-    alignas(Row::arch_type::alignment()) std::array<double, 4> w_row{};
+    alignas(Row) std::array<double, 4> w_row{};
     weights.w.y().store_aligned(w_row.data());
     for (std::size_t j = 0; j < Kernel::rows; ++j) {
       const auto add = [&](TileChannel channel, double a) {
         double* const at = tile[channel].data() + place + j * tile_stride;
-        xsimd::fma(w_m, Row(w_row[j] * a), Row::load_unaligned(at)).store_unaligned(at);
+        fma(w_m, Row(w_row[j] * a), Row::load_unaligned(at)).store_unaligned(at);
       };
       add(T_FX, ax[k]);
       add(T_FY, ay[k]);

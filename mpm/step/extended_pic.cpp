@@ -42,7 +42,7 @@ void through_points(const PointSet& points, const SlotRange& range, double h,
       for (std::size_t row = 0; row < Kernel::rows; ++row, node += tile_stride) {
         const auto add = [&](TileChannel c, const Row& part) {
           double* to = back[c].data() + node;
-          xsimd::fma(Row(w_y[row]), part, Row::load_unaligned(to)).store_unaligned(to);
+          fma(Row(w_y[row]), part, Row::load_unaligned(to)).store_unaligned(to);
         };
         add(T_PX, x_part);
         add(T_PY, y_part);

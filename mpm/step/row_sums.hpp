@@ -1,12 +1,12 @@
 #pragma once
 /// \file
-/// The points of a range on a tile where a row of a stencil is one register of sixteen (AVX2):
-/// channel by channel and plane by plane, the four rows of a stencil are loaded, take what up to
-/// four consecutive points with the same stencil add to them, and are stored again.
+/// The points of a range on a tile where a row of a stencil is one register of sixteen (AVX2) or
+/// two of thirty-two (NEON): channel by channel and plane by plane, the four rows of a stencil are
+/// loaded, take what up to four consecutive points with the same stencil add to them, and are
+/// stored again.
 
 #include "mpm/grid/grid.hpp"
 #include "mpm/grid/kernel.hpp"
-#include "mpm/grid/row_stencil.hpp"
 #include "mpm/grid/unrolled.hpp"
 
 namespace repose::mpm {
@@ -90,7 +90,7 @@ class RowSums {
       double* const to = at + row * tile_stride;
       Row sum = Row::load_unaligned(to);
       unrolled<run>([&](auto j) REPOSE_INLINE {
-        ((sum = xsimd::fma((*terms.weights)[j][row], terms.factor[j], sum)), ...);
+        ((sum = fma((*terms.weights)[j][row], terms.factor[j], sum)), ...);
       });
       sum.store_unaligned(to);
     });
@@ -127,7 +127,7 @@ class RowSums {
     };
     const auto plus = [&](std::array<Row, run> a, const std::array<Row, run>& b,
                           const std::array<Row, run>& c) REPOSE_INLINE {
-      for (std::size_t j = 0; j < run; ++j) a[j] = xsimd::fma(b[j], c[j], a[j]);
+      for (std::size_t j = 0; j < run; ++j) a[j] = fma(b[j], c[j], a[j]);
       return a;
     };
     std::array<Row, run> dx;

@@ -130,15 +130,15 @@ std::array<double, 3> strain_at(const double* weights, const double* vx, const d
     const Row w(weights[8 + j]), g(weights[12 + j]);
     const Row row_x = Row::load_unaligned(vx + j * tile_stride);
     const Row row_y = Row::load_unaligned(vy + j * tile_stride);
-    ax = xsimd::fma(w, row_x, ax);
-    bx = xsimd::fma(g, row_x, bx);
-    ay = xsimd::fma(w, row_y, ay);
-    by = xsimd::fma(g, row_y, by);
+    ax = fma(w, row_x, ax);
+    bx = fma(g, row_x, bx);
+    ay = fma(w, row_y, ay);
+    by = fma(g, row_y, by);
   }
   const Row w = Row::load_unaligned(weights), g = Row::load_unaligned(weights + 4);
-  const Row terms[4] = {g * ax, w * by, xsimd::fma(w, bx, g * ay), Row(0.0)};
-  alignas(Row::arch_type::alignment()) std::array<double, 4> sum;
-  xsimd::haddp(terms).store_aligned(sum.data());
+  const std::array<Row, 4> terms{g * ax, w * by, fma(w, bx, g * ay), Row(0.0)};
+  alignas(Row) std::array<double, 4> sum;
+  sums_of(terms).store_aligned(sum.data());
   return {sum[0], sum[1], sum[2]};
 }
 
@@ -164,8 +164,8 @@ class StencilSum {
 #pragma GCC unroll 4
     for (std::size_t j = 0; j < rows; ++j) {
       const Row wy(weights[8 + j]), gy(weights[12 + j]);
-      sum_x_[j] = xsimd::fma(wy, x_w, xsimd::fma(gy, x_g, sum_x_[j]));
-      sum_y_[j] = xsimd::fma(wy, y_w, xsimd::fma(gy, y_g, sum_y_[j]));
+      sum_x_[j] = fma(wy, x_w, fma(gy, x_g, sum_x_[j]));
+      sum_y_[j] = fma(wy, y_w, fma(gy, y_g, sum_y_[j]));
     }
   }
 

@@ -54,6 +54,10 @@ TEST_F(OtherSets, OneAloneIsTheOneThatRuns) {
 TEST_F(OtherSets, TheOneAskedForTakesOverWithTheArguments) {
   install("x86-64-v3");
   install("x86-64-v4");
+#if !defined(__x86_64__)  // there is one set only, whatever lies beside the program
+  EXPECT_EQ(run("--instruction-set avx2 --version").first, 2);
+  EXPECT_EQ(run("--version").second.substr(0, 7), "repose ");
+#else
   if (wide_) {
     EXPECT_EQ(run("--instruction-set avx2 run a.toml").second, "x86-64-v3 run a.toml\n");
     EXPECT_EQ(run("--version").second.substr(0, 7), "repose ");  // it is the fastest itself
@@ -65,6 +69,7 @@ TEST_F(OtherSets, TheOneAskedForTakesOverWithTheArguments) {
     EXPECT_EQ(run("--instruction-set avx512 --version").first, 2);
     EXPECT_EQ(run("--version").second.substr(0, 7), "repose ");
   }
+#endif
 }
 
 TEST_F(OtherSets, ATypoIsToldWithWhatThereIs) {

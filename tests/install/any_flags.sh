@@ -10,6 +10,7 @@ link=(-L"$lib" -Wl,-rpath,"$lib" -lrepose_calibration -lrepose_mpm -lrepose_poin
 compile() { "$CXX" -std=c++20 -I "$prefix/include" "$@"; }
 
 sets=("-O0 -march=x86-64" "-O2 -march=x86-64-v3" "-O3 -march=native")
+[[ $(uname -m) != aarch64 ]] || sets=("-O0 -march=armv8-a" "-O2 -march=armv8.1-a" "-O3 -march=native")
 for k in "${!sets[@]}"; do
   read -r -a flags <<< "${sets[k]}"
   compile "${flags[@]}" -DNUMBERS=numbers_$k -c "$source/tests/install/consumer.cpp" -o "$work/$k.o"

@@ -19,8 +19,14 @@ mirror=$(apt-get indextargets --format '$(RELEASE) $(REPO_URI)' "Created-By: Pac
 started=$SECONDS
 took() { echo "[ measured ] $1: $((SECONDS - started)) s"; started=$SECONDS; }
 
+# what the package holds beside what it always does, and what it can run by
+more_sets= more_files=() sets=(neon)
+if [[ $(uname -m) = x86_64 ]]; then
+  more_sets=x86-64-v4 sets=(avx2 avx512)
+  more_files=(./usr/lib/repose/x86-64-v4/repose ./usr/lib/glibc-hwcaps/x86-64-v4/librepose_mpm.so)
+fi
 "$CMAKE" -S "$source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DREPOSE_NATIVE=OFF \
-  -DREPOSE_MORE_SETS=x86-64-v4 -DREPOSE_TESTS=OFF > "$work.configure.log"
+  -DREPOSE_MORE_SETS=$more_sets -DREPOSE_TESTS=OFF > "$work.configure.log"
 "$CMAKE" --build "$work/build" > "$work.build.log" || { tail -30 "$work.build.log" >&2; exit 1; }
 took "building without the tests"
 rm -f "$work"/build/*.deb
@@ -30,8 +36,7 @@ deb=$(ls "$work"/build/*.deb)
 took "packing"
 dpkg-deb -f "$deb" Package Version Depends
 dpkg-deb -c "$deb" | awk '{ print $6 }' > "$work.contents.txt"
-for file in ./usr/bin/repose ./usr/lib/repose/x86-64-v4/repose ./usr/lib/librepose_mpm.so \
-  ./usr/lib/glibc-hwcaps/x86-64-v4/librepose_mpm.so ./usr/include/repose/models/law.hpp \
+for file in "${more_files[@]}" ./usr/bin/repose ./usr/lib/librepose_mpm.so ./usr/include/repose/models/law.hpp \
   ./usr/lib/cmake/repose/reposeConfig.cmake ./usr/share/doc/repose/copyright; do
   grep -qx -- "$file" "$work.contents.txt" || { echo "the package lacks $file" >&2; exit 1; }
 done
@@ -54,7 +59,7 @@ in_root repose point /usr/share/repose/experiments/weald_clay_undrained.toml -o 
 [[ -s $root/tmp/weald_clay/curve.csv ]]
 took "a shipped test"
 # the same collapse by every instruction set that this machine has
-for set in avx2 avx512; do
+for set in "${sets[@]}"; do
   grep -qw avx512vl /proc/cpuinfo || [[ $set != avx512 ]] || continue
   in_root repose --instruction-set $set run flat_mu_i --set scene.end_time=0.1 --no-plot --quiet -o /tmp/$set
   grep -q "\"instruction_set\": \"$set\"" "$root/tmp/$set/summary.json"

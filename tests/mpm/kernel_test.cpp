@@ -128,8 +128,8 @@ TYPED_TEST(KernelTest, StencilHoldsTheWholeSupport) {
   }
 }
 
-// The rows of x and y, their repetition and spreading over a register, and the weights of whole
-// packs of points are the same weights.
+// The rows of x and y, their repetition and spreading over a register that holds two of them, and
+// the weights of whole packs of points are the same weights.
 TYPED_TEST(KernelTest, EveryShapeHoldsTheSameWeights) {
   const auto positions = this->positions();
   for (std::size_t n = 0; n + Pack::size <= positions.size(); n += Pack::size) {
@@ -149,6 +149,7 @@ TYPED_TEST(KernelTest, EveryShapeHoldsTheSameWeights) {
       const Weights both = TypeParam::of_point(t, t_lane);
       EXPECT_EQ(values(both.w.y()), x.w);
       EXPECT_EQ(values(both.d.y()), x.d);
+#if defined(__AVX512F__)
       alignas(64) double repeated[Pack::size], spread[Pack::size];
       both.w.x_repeated().store_aligned(repeated);
       both.w.template y_spread<2>().store_aligned(spread);
@@ -156,8 +157,66 @@ TYPED_TEST(KernelTest, EveryShapeHoldsTheSameWeights) {
         EXPECT_EQ(repeated[k], values(both.w.x())[k % 4]);
         EXPECT_EQ(spread[k], x.w[2 + k / 4]);
       }
+#endif
     }
   }
+}
+
+/// Row r holds 10 r + 1 … 10 r + 4.
+Row numbered(std::size_t r) {
+  std::array<double, 4> x;
+  for (std::size_t k = 0; k < 4; ++k)
+    x[k] = 10.0 * static_cast<double>(r) + static_cast<double>(k) + 1.0;
+  return Row::load_unaligned(x.data());
+}
+
+TEST(Rows, ChangePlacesWithTheirLanes) {
+  std::array<Row, 4> rows{numbered(0), numbered(1), numbered(2), numbered(3)};
+  transpose(rows);
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      EXPECT_EQ(values(rows[k])[lane], values(numbered(lane))[k]) << k << " " << lane;
+}
+
+TEST(Rows, ColumnsHoldALaneOfEachPoint) {
+  std::array<Row, RowPoints::size> rows;
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = numbered(k);
+  const auto columns = columns_of(rows);
+  for (std::size_t k = 0; k < 4; ++k) {
+    std::array<double, RowPoints::size> column;
+    columns[k].store_unaligned(column.data());
+    for (std::size_t point = 0; point < rows.size(); ++point)
+      EXPECT_EQ(column[point], values(numbered(point))[k]) << k << " " << point;
+  }
+}
+
+TEST(Rows, AreSummedEachIntoItsLane) {  // whole numbers: exact in any order
+  EXPECT_EQ(values(sums_of({numbered(0), numbered(1), numbered(2), numbered(3)})),
+            (std::array<double, 4>{10.0, 50.0, 90.0, 130.0}));
+}
+
+TEST(Rows, AreMultipliedAndAddedInOneRounding) {
+  // (1 + ε)(1 − ε) − 1 = −ε², which is lost where the product is rounded
+  const Row left({1.0 + eps, 2.0, 3.0, 1.0 + eps}), right({1.0 - eps, 5.0, 7.0, 1.0 - eps});
+  const Row sum = fma(left, right, Row({-1.0, 1.0, -1.0, -1.0}));
+  EXPECT_EQ(values(sum), (std::array<double, 4>{-eps * eps, 11.0, 20.0, -eps * eps}));
+}
+
+TEST(Rows, AreRoundedDown) {
+  using std::floor;
+  EXPECT_EQ(values(Row(floor(Row({-0.5, 0.5, -2.0, 3.999})))),
+            (std::array<double, 4>{-1.0, 0.0, -2.0, 3.0}));
+}
+
+TEST(Rows, AreStoredAsTheyWereLoaded) {
+  alignas(Row) const std::array<double, 4> given{1.0, 2.0, 3.0, 4.0};
+  alignas(Row) std::array<double, 4> aligned{};
+  alignas(Row) std::array<double, 5> shifted{};
+  Row::load_aligned(given.data()).store_aligned(aligned.data());
+  Row::load_unaligned(given.data()).store_unaligned(shifted.data() + 1);
+  EXPECT_EQ(aligned, given);
+  EXPECT_EQ(shifted, (std::array<double, 5>{0.0, 1.0, 2.0, 3.0, 4.0}));
+  EXPECT_EQ(values(Row({1.0, 2.0, 3.0, 4.0})), given);
 }
 
 }  // namespace
