@@ -20,8 +20,10 @@ bool point_tangent(const typename L::template Params<Dual<N>>& P, const Sym<doub
   Increment<D, N> inc;
   Sym<D, N> at;
   typename L::template State<D> now{};
+  // without strain an update may leave a point alone, slopes and all: then the way of unloading
+  const bool none = contract(strain, strain) == 0.0;
   for (int k = 0; k < N; ++k) {
-    inc.strain[k] = D(strain[k], k);
+    inc.strain[k] = D(none && k < 3 ? 1e-30 : strain[k], k);
     at[k] = D(stress[k]);
   }
   for (std::size_t k = 0; k < L::state.size(); ++k) now[k] = D(state[k]);

@@ -54,7 +54,8 @@ bool suits(const Array& array, std::size_t points, std::size_t columns, bool wri
   if (points == 0 || columns == 0) return true;
   if (points > 1 && array.strides(0) != size) return false;
   const std::size_t room = padded(points), count = columns_in(columns);
-  if (columns != flat && columns > 1 && array.strides(1) < size * static_cast<py::ssize_t>(points))
+  if (columns != flat && columns > 1 &&
+      (array.strides(1) < size * static_cast<py::ssize_t>(points) || array.strides(1) % size != 0))
     return false;
   if (room == points) return true;
   const Memory* const memory = memory_of(array);

@@ -22,6 +22,9 @@ class ReadColumns {
   /// what: for messages, "strain". Throws InputError for another shape.
   ReadColumns(const py::object& given, std::string_view what, std::size_t points,
               std::size_t columns);
+  // the columns point into this one's own copy, which goes along when it is moved
+  ReadColumns(const ReadColumns&) = delete;
+  ReadColumns(ReadColumns&&) noexcept = default;
   const double* operator[](std::size_t k) const { return columns_[k]; }
 
  private:

@@ -58,6 +58,13 @@ void bind_input(py::module_& module) {
           [](const InputFile& file, const std::string& key) { return file.root().contains(key); },
           py::arg("table"), "Whether there is a table of this name.")
       .def(
+          "count",
+          [](const InputFile& file, const std::string& list) {
+            const toml::array* const entries = file.root()[list].as_array();
+            return entries == nullptr ? std::size_t{0} : entries->size();
+          },
+          py::arg("list"), "How many entries a list of tables has.")
+      .def(
           "text",
           [](const InputFile& file, const std::string& table, const std::string& key) {
             return file.root()[table][key].value_or(std::string());

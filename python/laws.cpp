@@ -118,15 +118,13 @@ struct BoundBatch {
   void look_at(const Law& law, std::size_t points, const py::object& stress,
                const py::object& state, const py::object& density) {
     batch.count = points;
-    const ReadColumns s(stress, "stress", points, n);
-    const ReadColumns v(state, "state", points, law.variables());
-    const ReadColumns d(density, "density", points, flat);
-    for (std::size_t k = 0; k < n; ++k) batch.stress[k] = const_cast<double*>(s[k]);
-    for (std::size_t k = 0; k < law.variables(); ++k) batch.state[k] = const_cast<double*>(v[k]);
-    batch.density = const_cast<double*>(d[0]);
-    keep(s);
-    keep(v);
-    keep(d);
+    keep(ReadColumns(stress, "stress", points, n));
+    for (std::size_t k = 0; k < n; ++k) batch.stress[k] = const_cast<double*>(read.back()[k]);
+    keep(ReadColumns(state, "state", points, law.variables()));
+    for (std::size_t k = 0; k < law.variables(); ++k)
+      batch.state[k] = const_cast<double*>(read.back()[k]);
+    keep(ReadColumns(density, "density", points, flat));
+    batch.density = const_cast<double*>(read.back()[0]);
   }
   void step(const py::object& strain, double dt, const py::object& spin) {
     if (!(dt >= 0.0) || !std::isfinite(dt))

@@ -140,6 +140,8 @@ class PythonMaterial final : public BatchLaw {
     const py::gil_scoped_acquire held;
     take(law_, "modulus", call("modulus", stress_of(points), state_of(points), density_of(points)),
          points.count, 1, rho_c2);
+    // the largest stable step is made of it
+    require("modulus", "> 0", rho_c2, points.count, [](double x) { return x > 0.0; });
   }
   void step_viscosity(const PointArrays& points, double* eta) const override {
     const py::gil_scoped_acquire held;
@@ -150,6 +152,7 @@ class PythonMaterial final : public BatchLaw {
          call("viscosity", stress_of(points), density_of(points),
               matrix(D.data(), points.count, points.components)),
          points.count, 1, eta);
+    require("viscosity", ">= 0", eta, points.count, [](double x) { return x >= 0.0; });
   }
   void energy(const PointArrays& points, double* stored) const override {
     const py::gil_scoped_acquire held;
@@ -158,6 +161,15 @@ class PythonMaterial final : public BatchLaw {
          points.count, 1, stored);
   }
 
+  template <class F>
+  void require(const char* method, const char* range, const double* values, std::size_t count,
+               F&& good) const {
+    for (std::size_t i = 0; i < count; ++i)
+      if (!std::isfinite(values[i]) || !good(values[i]))
+        throw InputError("name", fmt::format("{}.{} must return finite numbers {}; it returned {} "
+                                             "for point {}",
+                                             law_.info.name, method, range, values[i], i));
+  }
   template <class... A>
   py::object call(const char* method, A&&... arguments) const {
     return call_method(law_, method, named(law_, theta()), std::forward<A>(arguments)...);

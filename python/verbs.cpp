@@ -2,6 +2,7 @@
 #include "app/command_line.hpp"
 #include "app/commands/command.hpp"
 #include "binding.hpp"
+#include "io/interrupt.hpp"
 
 namespace repose::python {
 namespace {
@@ -18,10 +19,12 @@ app::CommonOptions options_of(const std::string& output, int threads, std::uint6
   return options;
 }
 
-/// Runs a verb without the interpreter's lock and returns its exit code.
+/// Runs a verb without the interpreter's lock and returns its exit code. An interrupt is the verb's
+/// from the start, also while it reads.
 template <class F>
 int without_lock(F&& verb) {
   const py::gil_scoped_release released;
+  const io::InterruptGuard interrupt;
   return static_cast<int>(verb());
 }
 

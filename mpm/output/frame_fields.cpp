@@ -1,6 +1,7 @@
 #include "mpm/output/frame_fields.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -18,12 +19,25 @@ double parameter_or_nan(const LawSpec& spec, std::string_view name) {
   return checked_parameters(spec)[static_cast<std::size_t>(found - table.begin())];
 }
 
-/// A field's name with its unit as a part of it: p_c_Pa, rho_sep_kg_per_m3.
+/// A field's name with its unit as a part of it: p_c_Pa, rho_sep_kg_per_m3. Laws from outside have
+/// any unit, of which letters and digits stay.
 std::string field_name(const StateField& field) {
-  const std::string name(field.name);
-  if (field.unit == "-") return name;
-  if (field.unit == "kg/m³") return name + "_kg_per_m3";
-  return name + "_" + std::string(field.unit);
+  std::string name(field.name);
+  if (field.unit.empty() || field.unit == "-") return name;
+  name += '_';
+  for (std::size_t i = 0; i < field.unit.size(); ++i) {
+    const std::string_view rest = field.unit.substr(i);
+    const auto c = static_cast<unsigned char>(field.unit[i]);
+    if (rest.starts_with("²") || rest.starts_with("³")) {
+      name += rest.starts_with("²") ? '2' : '3';
+      ++i;
+    } else if (c == '/') {
+      name += "_per_";
+    } else {
+      name += std::isalnum(c) != 0 ? static_cast<char>(c) : '_';
+    }
+  }
+  return name;
 }
 
 }  // namespace

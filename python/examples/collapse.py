@@ -17,7 +17,7 @@ for t in np.linspace(0.0, end, 7)[1:]:
     fastest = np.linalg.norm(sim.points.velocity, axis=1).max()
     print(f"t = {sim.time:.2f} s: front {now['front_99_m']:.3f} m, fastest point {fastest:.2f} m/s")
 
-sim.save("heap.h5")  # with heap.toml; repose.Simulation.load("heap.h5") goes on from here
+sim.save("heap.h5")  # with heap.h5.toml; repose.Simulation.load("heap.h5") goes on from here
 
 sim.tilt_deg = 25.0
 sim.step(until=end + 0.3)

@@ -36,7 +36,7 @@ def toml(value: Any, place: str = "the input") -> str:
         return "[" + ", ".join(toml(v, f"{place}[{i}]") for i, v in enumerate(value)) + "]"
     if isinstance(value, np.ndarray):
         return toml(value.tolist(), place)
-    raise _refused(f"{place}: {_described(value)} is no value of an input: numbers, texts, true and "
+    raise refused(f"{place}: {_described(value)} is no value of an input: numbers, texts, true and "
                    f"false, lists and tables are")
 
 
@@ -46,11 +46,12 @@ def _described(value: Any) -> str:
 
 def _key(key: Any, place: str) -> str:
     if not isinstance(key, str):
-        raise _refused(f"{place}: the key {key!r} is no text")
+        raise refused(f"{place}: the key {key!r} is no text")
     return key if _BARE.match(key) else _core.toml_string(key)
 
 
-def _refused(text: str) -> _core.InputError:
+def refused(text: str) -> _core.InputError:
+    """What to raise for input of Python's own that cannot be used."""
     error = _core.InputError(text)
     error.problems = [text]
     return error
@@ -85,14 +86,14 @@ def _put(table: dict, path: str, value: Any) -> None:
         elif match.group(2):
             steps.append(int(match.group(2)))
     if at != len(path) or not steps:
-        raise _refused(f"{path}: is not a key, as in grid.h or body[0].law.K")
+        raise refused(f"{path}: is not a key, as in grid.h or body[0].law.K")
     parent: Any = table
     for step, following in zip(steps, steps[1:]):
         try:
             child = parent[step]
         except (KeyError, IndexError):
             if isinstance(step, int) or isinstance(following, int):
-                raise _refused(f"{path}: there is no entry {step!r}") from None
+                raise refused(f"{path}: there is no entry {step!r}") from None
             child = {}
         if hasattr(child, "as_table"):
             child = child.as_table()
@@ -101,28 +102,29 @@ def _put(table: dict, path: str, value: Any) -> None:
         elif isinstance(child, (list, tuple)):
             child = list(child)
         else:
-            raise _refused(f"{path}: {step} is a value, not a table")
+            raise refused(f"{path}: {step} is a value, not a table")
         parent[step] = child
         parent = child
     try:
         parent[steps[-1]] = value
     except (IndexError, TypeError):
-        raise _refused(f"{path}: there is no entry {steps[-1]!r}") from None
+        raise refused(f"{path}: there is no entry {steps[-1]!r}") from None
 
 
 def open_input(kind: str, source: Source, changes: Mapping, law: Any = None,
-               replaced: Mapping | None = None) -> _core.Input:
+               replaced: Mapping | None = None, placed: Mapping | None = None) -> _core.Input:
     """Opens a dictionary, a file or a shipped input by its name, with changes of single keys.
 
     kind: "scene", "point_test" or "fit". law: stands in for the [law] table, or, a dictionary without
-    a name, changes keys of it. replaced: whole tables that stand in for those of the source.
+    a name, changes keys of it. replaced: whole tables that stand in for those of the source. placed: the same
+    at any place, {"body[0].law": law}; changes come after them.
     """
     whole = dict(replaced or {})
     if isinstance(law, Mapping) and "name" not in law:
         changes = {**changes, "law": law}
     elif law is not None:
         whole["law"] = law
-    changes = flattened(changes)
+    changes = {**(placed or {}), **flattened(changes)}
     if isinstance(source, Mapping):
         table = {**source, **whole}
         for path, value in changes.items():

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from .inputs import Source, open_input
+from .inputs import Source, open_input, refused
 from .law import Law
 from .names import nearest
 
@@ -147,7 +147,10 @@ class PointTest:
     """
 
     def __init__(self, test: Source, /, law: Law | Mapping | None = None, **changes: Any) -> None:
-        self._test = _core.PointTest(open_input("point_test", test, changes, law))
+        given = open_input("point_test", test, changes, law)
+        if given.has("sweep"):
+            raise refused(f"{given.name}: has a [sweep], many tests in one: repose.sweep drives them")
+        self._test = _core.PointTest(given)
 
     @property
     def name(self) -> str:

@@ -61,7 +61,7 @@ class PythonLaw:
     doc: str = ""
     has_stress_memory: bool = True  #: the stress at the start of a step matters
     parameters: Mapping[str, Parameter] = {}
-    state: Mapping[str, str] = {}  #: per variable what it is, as in {"e": "void ratio [-]"}; 4 at most
+    state: Mapping[str, str] = {}  #: per variable what it is, as in {"e": "void ratio [-]"}; 64 at most
 
     def update(self, P: SimpleNamespace, stress: np.ndarray, state: np.ndarray,
                density: np.ndarray, strain: np.ndarray, dt: float) -> Any:

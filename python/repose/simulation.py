@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ import numpy as np
 
 from . import _core
 from .columns import Columns
-from .inputs import Source, document, open_input
+from .inputs import Source, document, open_input, refused
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -89,18 +90,25 @@ class Simulation:
     """
 
     def __init__(self, scene: Source, /, law: Any = None, *, threads: int = 0, **changes: Any) -> None:
-        if law is not None:
-            changes = {**changes, **_law_changes(scene, law)}
-        self._sim = _core.Simulation(open_input("scene", scene, changes), threads)
+        self._sim = _core.Simulation(open_scene(scene, law, changes), threads)
 
-    def step(self, until: float | None = None, steps: int = 1) -> float:
-        """Takes `steps` steps, or as many as lead exactly to the time `until` [s]; returns the time.
+    def step(self, until: float | None = None, steps: int | None = None) -> float:
+        """Takes `steps` steps (1), or as many as lead exactly to the time `until` [s]; returns the
+        time.
 
         Raises NumericalFailure where the integration diverges.
         """
+        if until is not None and steps is not None:
+            raise refused("step: give until, a time, or steps, a number; not both")
         if until is None:
-            self._sim.advance(np.inf, steps)
+            count = 1 if steps is None else operator.index(steps)
+            if count < 0:
+                raise refused(f"step: steps = {count} must be >= 0")
+            self._sim.advance(np.inf, count)
         else:
+            if not until >= self.time:
+                raise refused(f"step: until = {until} s must not lie before the time of the "
+                              f"simulation, {self.time} s")
             self._sim.advance(until, np.iinfo(np.int64).max)
         return self.time
 
@@ -203,20 +211,35 @@ class Simulation:
         self._sim.set_wall(edge, _core.Input.table(text, "set_wall", []))
 
     def save(self, file: str | os.PathLike) -> None:
-        """Saves the whole state: FILE, a checkpoint, and beside it FILE with the suffix .toml, the
-        scene as it is now. `Simulation.load` goes on from them with the same bits."""
-        path = Path(file)
-        path.with_suffix(".toml").write_text(
-            self._sim.resolved(f"The scene of {path.name}, at t = {self.time!r} s"), encoding="utf-8")
-        self._sim.save(os.fspath(path))
+        """Saves the whole state: FILE, a checkpoint, and beside it FILE.toml, the scene as it is
+        now. `Simulation.load` goes on from them with the same bits. Where it fails, what was there
+        stays."""
+        path, scene = Path(file), _scene_beside(file)
+        if path.name == "" or path.is_dir():
+            raise IsADirectoryError(f"save: {os.fspath(file)!r} is a folder; a file is needed")
+        fresh = scene.with_name(scene.name + ".part")
+        fresh.write_text(self._sim.resolved(f"The scene of {path.name}, at t = {self.time!r} s"),
+                         encoding="utf-8")
+        try:
+            self._sim.save(os.fspath(path))
+        except BaseException:
+            fresh.unlink()
+            raise
+        fresh.replace(scene)
 
     @classmethod
     def load(cls, file: str | os.PathLike, *, threads: int = 0) -> "Simulation":
         """The simulation that was saved. Raises OSError where the files are none of `save`."""
         path = Path(file)
-        simulation = cls(path.with_suffix(".toml"), threads=threads)
+        simulation = cls(_scene_beside(path), threads=threads)
         simulation._sim.load(os.fspath(path))
         return simulation
+
+    def __copy__(self) -> "Simulation":
+        raise TypeError("a simulation is not copied: save() it and load() another")
+
+    def __deepcopy__(self, memo: dict) -> "Simulation":
+        return self.__copy__()
 
     def picture(self, file: str | os.PathLike) -> bool:
         """Draws the picture of `repose run`, an SVG, with gnuplot; False if there is nothing."""
@@ -232,9 +255,20 @@ class Simulation:
                 f"t = {self.time:.6g} of {self.end_time:g} s, {self.steps} steps>")
 
 
-def _law_changes(scene: Source, law: Any) -> dict[str, Any]:
-    bodies = len(scene.get("body", [])) if isinstance(scene, Mapping) else 1
-    return {f"body[{i}].law": law for i in range(bodies)}
+def _scene_beside(file: str | os.PathLike) -> Path:
+    return Path(os.fspath(file) + ".toml")
+
+
+def open_scene(scene: Source, law: Any, changes: Mapping) -> _core.Input:
+    """A scene whose bodies all have the given law; one that is a dictionary without a name changes
+    keys of their own."""
+    if law is None:
+        return open_input("scene", scene, changes)
+    count = open_input("scene", scene, {}).count("body")
+    if isinstance(law, Mapping) and "name" not in law:
+        of_bodies = {f"body[{i}].law.{key}": x for i in range(count) for key, x in law.items()}
+        return open_input("scene", scene, {**of_bodies, **changes})
+    return open_input("scene", scene, changes, placed={f"body[{i}].law": law for i in range(count)})
 
 
 def estimate(scene: Source, /, **changes: Any) -> dict[str, float]:

@@ -69,9 +69,8 @@ class Run {
         record_(simulation_),
         schedule_(scene_.end_time, scene_.series_interval, scene_.frame_interval),
         folder_(request.folder),
-        claim_(folder_) {
-    if (scene_.frame_interval > 0.0) frame_fields_.emplace(simulation_);
-  }
+        claim_(folder_),
+        frame_fields_(simulation_) {}
 
   io::ExitCode go();
 
@@ -105,9 +104,9 @@ class Run {
   io::FolderClaim claim_;
   std::optional<io::RowWriter> series_;
   std::optional<io::FrameWriter> frames_;
-  std::optional<mpm::FrameFields> frame_fields_;
-  double next_checkpoint_ = 0.0;           ///< by the clock of usage() [s]
-  std::set<std::string> told_;             ///< warnings already printed, without_figures()
+  mpm::FrameFields frame_fields_;  ///< a run that fails writes a frame whatever it was asked for
+  double next_checkpoint_ = 0.0;   ///< by the clock of usage() [s]
+  std::set<std::string> told_;     ///< warnings already printed, without_figures()
   std::vector<std::string> own_warnings_;  ///< beside the simulation's
 };
 
@@ -257,7 +256,7 @@ void Run::write_due() {
 
 void Run::write_frame() {
   const mpm::Simulation::Snapshot shot = simulation_.snapshot(request_.file.stress);
-  if (!shot.x_m.empty()) frames_->write(frame_fields_->view(shot, simulation_.time()));
+  if (!shot.x_m.empty()) frames_->write(frame_fields_.view(shot, simulation_.time()));
 }
 
 void Run::write_profile() const {

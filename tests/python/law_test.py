@@ -55,6 +55,27 @@ class Updates(unittest.TestCase):
     def setUp(self):
         self.law = repose.Law("modified_cam_clay", **CLAY)
 
+    def test_arrays_that_are_copied_give_the_same_bits_in_every_method(self):
+        for points in (5, 16, 37, 1000):
+            stress, state, density = self.law.points(points, 6, p=1e5, ocr=1.5)
+            stress[:, :3] -= np.linspace(0.0, 1e4, points)[:, np.newaxis]
+            strain = random_steps(points, 6, 1e-3)
+            copied = (np.ascontiguousarray(stress), np.ascontiguousarray(state), density.copy())
+            lists = tuple(a.tolist() for a in copied)
+            for given in (copied, lists):
+                for method in ("modulus", "wave_speed", "stored_energy"):
+                    np.testing.assert_array_equal(getattr(self.law, method)(*given),
+                                                  getattr(self.law, method)(stress, state, density))
+                np.testing.assert_array_equal(self.law.tangent(*given, strain, 1e-3),
+                                              self.law.tangent(stress, state, density, strain, 1e-3))
+
+    def test_memory_that_numbers_do_not_fit_into_is_not_written(self):
+        stress, state, density = self.law.points(16, 6, p=1e5, ocr=1.5)
+        odd = np.ndarray((16, 6), float, buffer=np.zeros((16 * 8 + 4) * 6, np.uint8), strides=(8, 16 * 8 + 4))
+        odd[:] = stress
+        with self.assertRaisesRegex(repose.InputError, "cannot be updated in place"):
+            self.law.update(odd, state, density, np.zeros((16, 6)), 1e-3, in_place=True)
+
     def test_memory_layout_changes_no_bit(self):
         for components in (4, 6):
             stress, state, density = self.law.points(37, components, p=1e5, ocr=1.5)

@@ -1,5 +1,6 @@
 """Scenes from Python: stepping, arrays, changes while running, checkpoints, result folders."""
 
+import copy
 import os
 import signal
 import subprocess
@@ -7,12 +8,14 @@ import sys
 import tempfile
 import threading
 import time
+import tomllib
 import unittest
 
 import numpy as np
 
 import repose
 
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 COMMAND = os.environ["REPOSE_COMMAND"]
 COARSE = {"grid.h": 0.025, "scene.end_time": 0.2}
 
@@ -78,6 +81,53 @@ class Stepping(unittest.TestCase):
                 repose.Simulation.load(file)
         with self.assertRaises(OSError):
             repose.Simulation.load("nowhere.h5")
+
+    def test_a_save_that_fails_leaves_what_was_there(self):
+        sim = repose.Simulation("flat_mu_i", **COARSE)
+        sim.step(steps=5)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, gravity in (("run_0.1", 9.0), ("run_0.2", 8.0)):
+                sim.gravity = gravity
+                sim.save(os.path.join(folder, name))
+            self.assertEqual(repose.Simulation.load(os.path.join(folder, "run_0.1")).gravity, 9.0)
+            before = sorted(os.listdir(folder))
+            with self.assertRaises(OSError):
+                sim.save(folder)
+            sim.gravity = 1e5
+            with self.assertRaises(repose.NumericalFailure):
+                sim.step(until=1.0)
+            with self.assertRaises(RuntimeError):
+                sim.save(os.path.join(folder, "run_0.1"))
+            self.assertEqual(sorted(os.listdir(folder)), before)
+            self.assertEqual(repose.Simulation.load(os.path.join(folder, "run_0.1")).gravity, 9.0)
+
+    def test_a_step_that_leads_nowhere_is_refused(self):
+        sim = repose.Simulation("flat_mu_i", **COARSE)
+        sim.step(until=0.02)
+        for wrong in (dict(until=float("nan")), dict(until=0.01), dict(steps=-1), dict(until=0.03, steps=1)):
+            with self.assertRaisesRegex(repose.InputError, "step: "):
+                sim.step(**wrong)
+        with self.assertRaisesRegex(TypeError, "save"):
+            copy.copy(sim)
+
+    def test_a_law_stands_in_for_that_of_every_body(self):
+        with open(os.path.join(ROOT, "data/scenes/flat_mu_i.toml"), "rb") as file:
+            scene = tomllib.load(file)
+        scene["grid"]["h"] = 0.05
+        second = {**scene["body"][0], "origin": [0.4, 0.0]}
+        scene["body"].append(second)
+        water = {"name": "newtonian", "rho_0": 1000.0, "K": 2.5e5, "eta": 1.0}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "two.toml")
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(repose.inputs.document(scene))
+            for source in (scene, path):
+                density = repose.Simulation(source, law=water).points.density
+                np.testing.assert_array_equal(density, 1000.0)
+                stiff = repose.Simulation(source, law={"K": 1e9})
+                soft = repose.Simulation(source)
+                # the signal grows with √K, so the step falls by √(1e9/254800) = 63
+                self.assertLess(stiff.next_dt, soft.next_dt / 50)
 
     def test_gravity_may_turn_and_the_ledger_still_closes(self):
         sim = repose.Simulation("flat_mu_i", **COARSE)

@@ -169,6 +169,7 @@ HostProcess::~HostProcess() { end(); }
 
 void HostProcess::end() {
   if (pid_ > 0) {
+    ::kill(-pid_, SIGKILL);  // its group, with what the library may have started
     ::kill(pid_, SIGKILL);
     while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
     }

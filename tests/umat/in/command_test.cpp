@@ -226,6 +226,13 @@ TEST_F(UmatCommand, SceneNeedsADensityAndNoPressureAveraging) {
 }
 
 // A library that fails in step 40: exit code 3, the reason, and the state is kept.
+TEST_F(UmatCommand, FramesHoldItsState) {
+  const Said said = repose("run " + write("scene.toml", scene) +
+                           " --no-plot --set output.frame_interval=0.01 -o " + folder("framed"));
+  ASSERT_EQ(said.code, 0) << said.text;
+  EXPECT_TRUE(std::filesystem::exists(scratch.path() / "framed/frames/scene_00002.hdf"));
+}
+
 TEST_F(UmatCommand, FailureInARunKeepsItsState) {
   for (const auto& [deed, words] :
        std::vector<std::pair<std::string, std::string>>{{"7.0", "it crashed (SIGSEGV"},

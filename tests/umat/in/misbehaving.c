@@ -23,7 +23,9 @@ enum deed {
   deep_recursion,
   talk_and_exit,
   half_increments,
-  divide_by_zero
+  divide_by_zero,
+  fork_and_return,
+  fork_and_exit
 };
 
 static int deeper(int depth) {
@@ -101,6 +103,12 @@ void umat_(double* stress, double* statev, double* ddsdde, double* sse, double* 
       break;
     case divide_by_zero:
       stress[0] += *kinc / zero;
+      break;
+    case fork_and_return:
+      if (*kinc == (int)props[1]) fork();
+      break;
+    case fork_and_exit:
+      if (*kinc == (int)props[1] && fork() == 0) exit(4);
       break;
   }
 }

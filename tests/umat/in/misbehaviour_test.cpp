@@ -29,7 +29,9 @@ enum Deed {
   deep_recursion,
   talk_and_exit,
   half_increments,
-  divide_by_zero
+  divide_by_zero,
+  fork_and_return,
+  fork_and_exit
 };
 
 struct Fate {
@@ -106,6 +108,20 @@ TEST(UmatPnewdt, BelowOneCutsTheStep) {
   law = misbehaving(smaller_for_ever, 26);
   EXPECT_EQ(point::simulate(*law.info, law.theta, triaxial(1e5, 0.01, 10), curve).status,
             Status::not_converged);
+}
+
+// A child of the library's process ends without a word: the path is that of a library without one.
+TEST(UmatFork, AChildNeitherServesNorAnswers) {
+  const point::PointTest test = triaxial(1e5, 0.01, 10);
+  const auto last = [&](Deed deed, int from) {
+    const TestLaw law = misbehaving(deed, from);
+    Curve curve;
+    EXPECT_EQ(point::simulate(*law.info, law.theta, test, curve).status, Status::completed) << deed;
+    return curve.rows.back().stress;
+  };
+  const auto alone = last(fork_and_return, 1'000'000);
+  for (const Deed deed : {fork_and_return, fork_and_exit})
+    EXPECT_EQ(last(deed, 26).c, alone.c) << deed;
 }
 
 TEST(UmatLoading, SaysWhatIsMissing) {

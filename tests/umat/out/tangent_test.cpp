@@ -60,5 +60,27 @@ TYPED_TEST(UmatTangent, IsThatOfTheUmat) {
   }
 }
 
+/// A host may ask before it has a strain: the answer is that of unloading, a stiffness.
+TYPED_TEST(UmatTangent, WithoutAStrainIsThatOfUnloading) {
+  using L = TypeParam;
+  for (const LawExample& example : examples_of<L>()) {
+    const auto P = parameters_of<L>(example);
+    Random random(22);
+    const LawPoint<L> start = random_point<L>(example, P, random, false);
+    const auto of = [&](double extension) {
+      Host host = host_of<L>(example, start, 3);
+      EXPECT_TRUE(host.step({extension, extension, extension, 0.0, 0.0, 0.0}, example.time));
+      return host.ddsdde;
+    };
+    const auto none = of(0.0), little = of(1e-12);
+    double size = 0.0;
+    for (const double x : little) size = std::max(size, std::abs(x));
+    ASSERT_GT(size, 0.0);
+    // moduli change by no more than 1/κ* < 2000 of themselves per strain
+    for (std::size_t k = 0; k < none.size(); ++k)
+      EXPECT_NEAR(none[k], little[k], 2e-8 * size) << example.label << ", entry " << k;
+  }
+}
+
 }  // namespace
 }  // namespace repose::umat

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include <dlfcn.h>
 #include <sys/mman.h>
@@ -27,6 +28,7 @@ namespace {
 Header* shared = nullptr;
 std::uint32_t request = 0;
 const UmatCall* current = nullptr;
+const pid_t self = ::getpid();
 
 void say(const char* text) {
   std::strncpy(shared->message, text, sizeof shared->message - 1);
@@ -38,7 +40,13 @@ void answer() {
   wake(shared->answer);
 }
 
+/// A library may fork; the child must not answer in its parent's place, nor serve beside it.
+void leave_if_a_child() {
+  if (::getpid() != self) ::_exit(0);
+}
+
 void give_up(Fault fault, int detail) {
+  leave_if_a_child();
   shared->fault = static_cast<std::uint32_t>(fault);
   shared->detail = detail;
   answer();
@@ -90,6 +98,20 @@ void keep_log_short() {
   }
 }
 
+/// Ends this process and what the library has started when repose is there no more, whatever the
+/// library is doing.
+void end_with_repose() {
+  sigset_t all;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_BLOCK, &all, nullptr);
+  for (;;) {
+    ::usleep(500'000);
+    if (static_cast<std::uint32_t>(::getppid()) == shared->parent) continue;
+    if (::getpgrp() == self) ::kill(0, SIGKILL);
+    ::raise(SIGKILL);
+  }
+}
+
 UmatFunction* load(const char* library, const char* symbol) {
   void* const handle = ::dlopen(library, RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) {
@@ -138,6 +160,7 @@ int serve(const Exchange& exchange, const char* library, const char* symbol, con
       header.calls.fetch_add(1, std::memory_order_release);
       const Fault fault =
           call->run(header, exchange.props(), exchange.point(i), exchange.statev(i));
+      leave_if_a_child();
       if (fault == Fault::none) continue;
       if (fault == Fault::beyond_array) {
         say(call->damaged()->name());
@@ -173,6 +196,7 @@ int main(int argc, char** argv) {
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setrlimit(RLIMIT_FSIZE, &file_size);
   catch_signals();
+  std::thread(end_with_repose).detach();
   ::on_exit(on_end, nullptr);
   const int status = serve(exchange, argv[2], argv[3], argv[4]);
   std::fflush(nullptr);
