@@ -50,6 +50,8 @@ class Driven:
 
 class Input:
     """An input with its overrides, not yet checked."""
+    def count(self: Input, list: str) -> int:
+        """How many entries a list of tables has."""
     def has(self: Input, table: str) -> bool:
         """Whether there is a table of this name."""
     @property
