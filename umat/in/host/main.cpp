@@ -40,13 +40,13 @@ void answer() {
   wake(shared->answer);
 }
 
-/// A library may fork; the child must not answer in its parent's place, nor serve beside it.
+/// A library may fork; what becomes of the child is not what becomes of this process
+/// (umat_call.cpp has those that return).
 void leave_if_a_child() {
   if (::getpid() != self) ::_exit(0);
 }
 
 void give_up(Fault fault, int detail) {
-  leave_if_a_child();
   shared->fault = static_cast<std::uint32_t>(fault);
   shared->detail = detail;
   answer();
@@ -54,6 +54,7 @@ void give_up(Fault fault, int detail) {
 
 /// A signal ends the process; what it was and which array it was about is left behind.
 void on_signal(int signal, siginfo_t* info, void*) {
+  leave_if_a_child();
   Fault fault = signal == SIGABRT ? Fault::aborted : Fault::crashed;
   shared->message[0] = '\0';
   if (signal == SIGSEGV && current != nullptr)
@@ -72,6 +73,7 @@ void on_signal(int signal, siginfo_t* info, void*) {
 
 /// STOP and exit() come here.
 void on_end(int status, void*) {
+  leave_if_a_child();
   shared->message[0] = '\0';
   give_up(Fault::exited, status);
 }
@@ -160,7 +162,6 @@ int serve(const Exchange& exchange, const char* library, const char* symbol, con
       header.calls.fetch_add(1, std::memory_order_release);
       const Fault fault =
           call->run(header, exchange.props(), exchange.point(i), exchange.statev(i));
-      leave_if_a_child();
       if (fault == Fault::none) continue;
       if (fault == Fault::beyond_array) {
         say(call->damaged()->name());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include <unistd.h>
+
 namespace repose::umat {
 namespace {
 
@@ -70,7 +72,8 @@ UmatCall::UmatCall(UmatFunction* function, const Header& header, const char* cmn
       all_{&stress_, &statev_, &ddsdde_, &ddsddt_,  &drplde_,   &stran_,
            &dstran_, &time_,   &predef_, &dpred_,   &props_,    &coords_,
            &drot_,   &dfgrd0_, &dfgrd1_, &scalars_, &integers_, &cmname_},
-      kept_statev_(header.nstatv) {
+      kept_statev_(header.nstatv),
+      self_(::getpid()) {
   name_.fill(' ');
   std::memcpy(name_.data(), cmname, std::min(name_.size(), std::strlen(cmname)));
 }
@@ -120,6 +123,9 @@ void UmatCall::call(const Header& header, const double* props, const PointRecord
             drot_.data(), scalar + pnewdt, scalar + celent, dfgrd0_.data(), dfgrd1_.data(),
             integer + noel, integer + npt, integer + layer, integer + kspt, integer + jstep,
             integer + kinc, name_.size());
+  // a child that the library has forked comes back here as well: two must not serve, nor may it
+  // write what it has into the record
+  if (::getpid() != self_) ::_exit(0);
 }
 
 Fault UmatCall::run(const Header& header, const double* props, PointRecord& record,

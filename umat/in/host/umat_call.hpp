@@ -7,6 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include <sys/types.h>
+
 #include "umat/in/host/guarded_array.hpp"
 #include "umat/in/wire.hpp"
 
@@ -50,6 +52,7 @@ class UmatCall {
   std::array<const GuardedArray*, 18> all_;
   std::array<char, 80> name_;
   std::vector<double> kept_statev_;
+  pid_t self_;
 };
 
 }  // namespace repose::umat
