@@ -1,6 +1,7 @@
 #include "input/read_umat.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -69,6 +70,24 @@ void all_keys(Keys& keys, Table& t) {
               t.rho_p);
 }
 
+/// Reports a name that cannot be a key beside the others.
+void check_names(TomlReader& law, const Table& t) {
+  std::vector<std::string> own{"name"};
+  for (const KeyInfo& key : umat_infos()) own.emplace_back(key.name);
+  const auto bare = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  for (std::size_t i = 0; i < t.names.size(); ++i) {
+    const std::string& name = t.names[i];
+    if (name.empty() || !std::all_of(name.begin(), name.end(), bare))
+      law.report("names", fmt::format("names: {} for PROPS({}) is no key: letters, digits, _ and - "
+                                      "are, at least one",
+                                      toml_string(name), i + 1));
+    else if (std::find(own.begin(), own.end(), name) != own.end())
+      law.report("names", fmt::format("names: \"{}\" is a key of every umat: call PROPS({}) "
+                                      "something else",
+                                      name, i + 1));
+  }
+}
+
 /// Values of PROPS from the list and the keys of their names; nothing where one is missing.
 std::optional<std::vector<double>> read_props(TomlReader& law, const Table& t,
                                               const Description& d) {
@@ -119,6 +138,8 @@ LawSpec read_umat(TomlReader law) {
   all_keys(keys, t);
   // whatever the faults, the names that are given are keys
   for (const std::string& name : t.names) law.expect(name);
+  check_names(law, t);
+  if (!file.ok()) return spec;
 
   Description d;
   d.names = t.names;

@@ -71,9 +71,9 @@ bool suits(const Array& array, std::size_t points, std::size_t columns, bool wri
 
 Array as_numbers(const py::object& given, std::string_view what) {
   Array array = Array::ensure(given);
-  if (!array) {
+  if (!array || is_complex(given)) {
     PyErr_Clear();
-    throw InputError(std::string(what), fmt::format("{} is no array of numbers", what));
+    throw InputError(std::string(what), fmt::format("{} is no array of real numbers", what));
   }
   return array;
 }
@@ -92,6 +92,12 @@ void copy_columns(const Array& from, std::size_t points, std::size_t columns, do
 }
 
 }  // namespace
+
+bool is_complex(const py::handle& given) {
+  const py::array array = py::array::ensure(given);
+  if (!array) PyErr_Clear();
+  return array && array.dtype().kind() == 'c';
+}
 
 Array batch_array(std::size_t points, std::size_t columns) {
   const std::size_t room = padded(points);
@@ -125,7 +131,10 @@ ReadColumns::ReadColumns(const py::object& given, std::string_view what, std::si
 std::vector<double*> write_columns(const Array& array, std::string_view what, std::size_t points,
                                    std::size_t columns) {
   require_shape(array, what, points, columns);
-  if (!array.writeable() || !suits(array, points, columns, true))
+  if (!array.writeable())
+    throw InputError(std::string(what),
+                     fmt::format("{} cannot be updated in place: it is read-only", what));
+  if (!suits(array, points, columns, true))
     throw InputError(
         std::string(what),
         fmt::format("{} cannot be updated in place: it needs numbers in columns (order "

@@ -15,6 +15,9 @@ inline constexpr std::size_t flat = static_cast<std::size_t>(-1);
 /// as it is: column by column, with room for the padding.
 Array batch_array(std::size_t points, std::size_t columns);
 
+/// Whether numbers would lose their imaginary parts.
+bool is_complex(const py::handle& given);
+
 /// The columns of an array, to be read. Where its memory does not do (any order but column by
 /// column; no room for padding) they are copied.
 class ReadColumns {

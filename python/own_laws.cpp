@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "batches.hpp"
 #include "binding.hpp"
 #include "models/batch_law.hpp"
 #include "models/registry.hpp"
@@ -40,6 +41,9 @@ void take(const OwnLaw& law, const char* method, const py::handle& given, std::s
           std::size_t columns, double* to) {
   const Array array = Array::ensure(given);
   const auto extent = [&](py::ssize_t axis) { return static_cast<std::size_t>(array.shape(axis)); };
+  if (is_complex(given))
+    throw py::value_error(fmt::format("{}.{} must return real numbers; it returned complex ones",
+                                      law.info.name, method));
   const bool scalar = array && array.ndim() == 0 && columns == 1;
   const bool one = array && array.ndim() == 1 && columns == 1 && extent(0) == points;
   const bool two = array && array.ndim() == 2 && extent(0) == points && extent(1) == columns;

@@ -114,7 +114,8 @@ class Driven {
     return array_of(std::move(values));
   }
   py::array state() const {
-    const std::size_t m = result_.law->state.size() + result_.law->derived.size();
+    const std::size_t m =
+        std::min(result_.law->state.size() + result_.law->derived.size(), point::max_state);
     std::vector<double> values;
     for (const auto& row : curve().rows)
       values.insert(values.end(), row.state.begin(),

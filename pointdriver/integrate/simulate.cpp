@@ -123,7 +123,7 @@ double start_value(const LawInfo& law, std::span<const double> theta, const Poin
         Curve curve;
         Row<double>& row = curve.rows.emplace_back();
         for (std::size_t i = 0; i < 6; ++i) row.stress.c[i] = stress_of(law, numbers)[i];
-        for (std::size_t i = 0; i < law.state.size(); ++i)
+        for (std::size_t i = 0; i < std::min(law.state.size(), max_state); ++i)
           row.state[i] = numbers[law.parameters.size() + 6 + i];
         row.density = numbers.back();
         std::vector<double> value;

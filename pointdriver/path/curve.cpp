@@ -1,5 +1,7 @@
 #include "pointdriver/path/curve.hpp"
 
+#include <algorithm>
+
 namespace repose::point {
 namespace {
 constexpr std::array<std::string_view, quantity_count> names{"time_s",
@@ -56,9 +58,9 @@ int parameter_index(std::span<const ParamInfo> table, std::string_view name) {
 
 int variable_index(std::span<const StateField> state, std::span<const StateField> derived,
                    std::string_view name) {
-  for (std::size_t i = 0; i < state.size(); ++i)
+  for (std::size_t i = 0; i < std::min(state.size(), max_state); ++i)
     if (state[i].name == name) return static_cast<int>(i);
-  for (std::size_t i = 0; i < derived.size(); ++i)
+  for (std::size_t i = 0; state.size() + i < max_state && i < derived.size(); ++i)
     if (derived[i].name == name) return static_cast<int>(state.size() + i);
   return -1;
 }

@@ -195,7 +195,7 @@ void set_pore_pressure_datum(const std::vector<Row<T>>& rows, int first_undraine
 
 /// Index of a parameter in a law's table, -1 if it has none of that name.
 int parameter_index(std::span<const ParamInfo> table, std::string_view name);
-/// Index in Row::state of a state variable or derived one, -1 if the law has none of that name.
+/// Index in Row::state of a state variable or derived one, -1 if it carries none of that name.
 int variable_index(std::span<const StateField> state, std::span<const StateField> derived,
                    std::string_view name);
 inline int variable_index(const LawInfo& law, std::string_view name) {

@@ -97,7 +97,8 @@ class PointResult(Mapping):
 
     @property
     def state(self) -> np.ndarray:
-        """(rows, variables) of the law, state first, then derived ones."""
+        """(rows, variables) of the law, state first, then derived ones; of a law with more than four
+        the first four."""
         return self._driven.state
 
     @property

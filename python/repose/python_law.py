@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from .inputs import refused
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,14 @@ class _Adapter:
 
     def update(self, P, stress, state, density, strain, dt):
         answer = self._law.update(SimpleNamespace(**P), stress, state, density, strain, dt)
-        return answer if isinstance(answer, tuple) else (answer, state)
+        if isinstance(answer, tuple):
+            if len(answer) != 2:
+                raise ValueError(f"{self._law.name}.update must return (stress, state); it returned "
+                                 f"{len(answer)} things")
+            return answer
+        if self._law.state:
+            raise ValueError(f"{self._law.name}.update must return (stress, state): the law has state")
+        return answer, state
 
     def modulus(self, P, *arrays):
         return self._each(self._law.modulus(SimpleNamespace(**P), *arrays), arrays[0])
@@ -132,6 +141,18 @@ class _Adapter:
                 float(density))
 
 
+def _check(place: str, name: str, p: Parameter) -> None:
+    if not re.fullmatch(r"[A-Za-z0-9_-]+", name) or name == "name":
+        raise refused(f"{place}: a parameter's name is a key of [law]: letters, digits, _ and -, and "
+                      f"not \"name\"")
+    if not p.lower <= p.upper:
+        raise refused(f"{place}: lower = {p.lower} must not be above upper = {p.upper}")
+    inside = p.default is None or p.lower < p.default < p.upper or (
+        p.closed and p.lower <= p.default <= p.upper)
+    if not inside or (p.default is not None and not math.isfinite(p.default)):
+        raise refused(f"{place}: default = {p.default} does not lie within its range")
+
+
 def register_law(law: type[PythonLaw]) -> type[PythonLaw]:
     """Makes a law known by its name, to point tests, fits and scenes; may stand as a decorator.
 
@@ -145,6 +166,7 @@ def register_law(law: type[PythonLaw]) -> type[PythonLaw]:
     for name, p in made.parameters.items():
         if not isinstance(p, Parameter):
             raise TypeError(f"{law.__name__}.parameters[{name!r}] is no repose.Parameter")
+        _check(f"{law.__name__}.parameters[{name!r}]", name, p)
         parameters.append({"name": name, "symbol": p.symbol or name, "unit": p.unit, "doc": p.doc,
                            "default": p.default, "optional": p.optional, "log": p.log,
                            "lower": p.lower, "upper": p.upper,

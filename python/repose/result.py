@@ -71,8 +71,14 @@ class Result:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """summary.json."""
-        return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+        """summary.json; empty while the work has not come so far."""
+        file = self.folder / "summary.json"
+        if not file.is_file():
+            return {}
+        try:
+            return json.loads(file.read_text(encoding="utf-8"))
+        except json.JSONDecodeError as error:
+            raise OSError(f"{file}: is damaged: {error}") from None
 
     @cached_property
     def input(self) -> dict[str, Any]:

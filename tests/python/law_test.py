@@ -126,7 +126,7 @@ class Updates(unittest.TestCase):
             self.law.update(stress[:, :5], state, density, np.zeros((20, 5)), 1.0)
         with self.assertRaisesRegex(repose.InputError, "dt = -1"):
             self.law.update(stress, state, density, np.zeros((20, 6)), -1.0)
-        with self.assertRaisesRegex(repose.InputError, "no array of numbers"):
+        with self.assertRaisesRegex(repose.InputError, "no array of real numbers"):
             self.law.update(stress, state, density, "strain", 1.0)
 
     def test_no_number_is_a_failure_that_names_the_point(self):

@@ -52,6 +52,10 @@ class AgainstTheCommand(unittest.TestCase):
                 if key not in ("wall_s", "cpu_s", "repose"):  # the program may be of another commit
                     self.assertEqual(mine[key], summary[key], key)
 
+    def test_a_sweep_is_not_one_test(self):
+        with self.assertRaisesRegex(repose.InputError, "repose.sweep drives them"):
+            repose.point("clay_rates")
+
     def test_output_is_the_folder_of_the_command(self):
         out = os.path.join(self.folder.name, "mine")
         test = repose.point("weald_clay_undrained", output=out, plot=False)

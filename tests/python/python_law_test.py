@@ -136,6 +136,49 @@ class Scenes(unittest.TestCase):
         with self.assertRaises(repose.NumericalFailure):
             repose.Simulation(scene).run()
 
+    def test_a_modulus_that_makes_no_step_is_refused(self):
+        for k, wrong in enumerate((np.inf, np.nan, 0.0, -1.0)):
+            class Stepless(Elastic):
+                name = f"python_stepless_{k}"
+
+                def modulus(self, P, stress, state, density):
+                    return wrong
+            repose.register_law(Stepless)
+            scene = {**SCENE, "body": [{**SCENE["body"][0], "law": {**LAW, "name": Stepless.name}}]}
+            with self.assertRaisesRegex(repose.InputError, "modulus must return finite numbers > 0"):
+                repose.Simulation(scene).step(until=0.01)
+
+    def test_more_than_four_state_variables_at_a_point(self):
+        class Many(Elastic):
+            name = "python_many"
+            state = {**{f"s{i}": "volume strain so far [-]" for i in range(8)}, "p_c": "likewise [-]"}
+        repose.register_law(Many)
+        test = {"law": {**LAW, "name": "python_many"}, "initial": {"p": 1e4},
+                "test": {"kind": "triaxial", "drainage": "drained", "axial_strain": 0.01, "points": 10}}
+        curve = repose.point(test)
+        self.assertEqual(curve.state.shape[1], 4)  # the first four of nine
+        self.assertNotIn("p_c_Pa", curve.columns)  # which is the ninth
+        # each adds up what the test reports, of the other sign
+        for i in range(4):
+            np.testing.assert_allclose(curve.state[:, i], -curve["eps_v"], atol=1e-13)
+
+    def test_what_makes_no_law(self):
+        def update(answer):
+            return lambda self, P, s, v, r, e, dt: answer(s, v)
+        for name, answer, told in (("complex", lambda s, v: (s + 0j, v), "real numbers"),
+                                   ("bare", lambda s, v: s, "the law has state"),
+                                   ("three", lambda s, v: (s, v, 3), "3 things")):
+            with self.assertRaisesRegex(ValueError, told):
+                repose.Simulation(self.failing(f"python_{name}", update(answer))).run()
+        for key, p in (("K", repose.Parameter("", lower=2, upper=1)), ("name", repose.Parameter("")),
+                       ("K", repose.Parameter("", default=-1.0, lower=0)), ("a b", repose.Parameter("")),
+                       ("K", repose.Parameter("", default=float("nan")))):
+            class Bad(Elastic):
+                name = "python_bad"
+                parameters = {key: p}
+            with self.assertRaises(repose.InputError):
+                repose.register_law(Bad)
+
     def test_averaging_is_refused(self):
         with self.assertRaisesRegex(repose.InputError, "pressure_averaging"):
             repose.Simulation(SCENE, step={"pressure_averaging": 50.0}).step()

@@ -323,9 +323,10 @@ void HostProcess::check_finite(std::size_t count, std::size_t ntens) {
         if (const double x = record.ddsdde[column * ntens + row]; !std::isfinite(x))
           fail(Fault::not_finite, i,
                fmt::format("it returned DDSDDE({},{}) = {}", row + 1, column + 1, x));
-    check("SSE", &record.sse, 1);
-    check("SPD", &record.spd, 1);
-    if (!std::isfinite(record.pnewdt)) check("PNEWDT", &record.pnewdt, 1);
+    for (const auto& [name, x] : {std::pair{"SSE", record.sse}, std::pair{"SPD + SCD", record.spd},
+                                  std::pair{"PNEWDT", record.pnewdt}})
+      if (!std::isfinite(x))
+        fail(Fault::not_finite, i, fmt::format("it returned {} = {}", name, x));
   }
 }
 

@@ -44,10 +44,10 @@ class Forms {
 /// Everything that makes the law what it is, in words: what a LawSpec carries as its option.
 std::string identity_of(const Description& d) {
   const Library& l = d.library;
-  return fmt::format("{} ({}, {} as {}, props {}, statev {} from {}, void ratio {}, {:g} s{})",
-                     l.file.string(), l.content, l.symbol, l.cmname, fmt::join(d.names, " "),
-                     l.nstatv, fmt::join(d.initial_statev, " "), d.void_ratio_statev,
-                     l.time_limit_s, d.has_grain_density ? ", rho_p" : "");
+  return fmt::format("{} ({}, {} as {}, {} props {}, statev {} from {}, void ratio {}, {} s{})",
+                     l.file.string(), l.content, l.symbol, l.cmname, l.nprops,
+                     fmt::join(d.names, " "), l.nstatv, fmt::join(d.initial_statev, " "),
+                     d.void_ratio_statev, l.time_limit_s, d.has_grain_density ? ", rho_p" : "");
 }
 
 void check(const Description& d) {
@@ -63,9 +63,7 @@ void check(const Description& d) {
   for (std::size_t i = 0; i < d.library.nprops; ++i) {
     const std::string name = prop_name(d, i);
     if (name == density_name || name == grain_density_name)
-      throw InputError("names", fmt::format("names: \"{}\" is a key of every umat: call PROPS({}) "
-                                            "something else",
-                                            name, i + 1));
+      throw InputError("names", fmt::format("names: \"{}\" is a parameter of every umat", name));
     if (!names.insert(name).second)
       throw InputError("names", fmt::format("names: \"{}\" stands there twice", name));
   }
@@ -128,9 +126,10 @@ fs::path find_library(const std::string& text, const fs::path& folder) {
     for (const fs::path& shipped : places("", "lib/repose/umat")) all.push_back(shipped / text);
   for (const fs::path& place : all)
     if (fs::is_regular_file(place, ignored)) return place;
-  if (fs::is_directory(beside, ignored))
+  if (fs::exists(beside, ignored))
     throw InputError(
-        "library", fmt::format("{} is a folder, and a shared library is needed", beside.string()));
+        "library", fmt::format("{} is {}, and a shared library is needed", beside.string(),
+                               fs::is_directory(beside, ignored) ? "a folder" : "no regular file"));
   std::string near;
   for (const fs::path& place : all) {
     std::vector<std::string> files;

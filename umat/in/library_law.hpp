@@ -62,6 +62,13 @@ std::string make_known(const Description& description);
 /// The description behind a law; null if it is no UMAT.
 const Description* description_of(const LawInfo& law);
 
+/// What of the work of a step a UMAT does not store [J/m³]: what SPD and SCD say has been spent;
+/// the rest of the work where they say nothing.
+inline double spent_in_step(double spd_before, double spd_after, double sse_before,
+                            double sse_after, double work) {
+  return spd_after != 0.0 ? spd_after - spd_before : work - (sse_after - sse_before);
+}
+
 /// Parameters of a form, in order.
 struct Layout {
   std::size_t nprops, nstatv;

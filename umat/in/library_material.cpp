@@ -155,10 +155,8 @@ void LibraryMaterial::update_part(const BatchOf<N>& batch, std::size_t first, st
     const Sym<double, N> after = stress_from<N>(record.stress);
     const Sym<double, N> total = rotate(gather<N>(batch.state, at_.own(strain_xx), k)) + strain;
     const double work = 0.5 * contract(before + after, strain);
-    // what the library does not account for counts as not stored
-    const double d_stored = record.sse - own(batch, stored)[k];
-    const double d_spent = record.spd - own(batch, spent)[k];
-    const double lost = record.spd != 0.0 ? d_spent : work - d_stored;
+    const double lost =
+        spent_in_step(own(batch, spent)[k], record.spd, own(batch, stored)[k], record.sse, work);
     for (int c = 0; c < N; ++c) {
       batch.stress[static_cast<std::size_t>(c)][k] = after[c];
       batch.state[at_.own(strain_xx) + static_cast<std::size_t>(c)][k] = total[c];

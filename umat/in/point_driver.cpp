@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "pointdriver/integrate/drive.hpp"
 #include "pointdriver/integrate/plain_rows.hpp"
 #include "umat/in/point_law.hpp"
@@ -45,7 +47,12 @@ point::Outcome PointDriver::drive(std::span<const double> numbers, const point::
   point::Outcome& outcome = curve.outcome;
   outcome.counts.tangents_checked = session.tangents_checked;
   outcome.counts.tangents_off = session.tangents_off;
-  if (outcome.status == point::Status::law_failed && session.failure()) {
+  if (outcome.status == point::Status::not_converged && session.wants_less()) {
+    outcome.status = point::Status::law_failed;
+    curve.said = fmt::format("{}: it asked for ever smaller increments (PNEWDT < 1)",
+                             description_.library.file.string());
+    outcome.fault = word(Fault::not_converged);
+  } else if (outcome.status == point::Status::law_failed && session.failure()) {
     curve.said = session.failure()->what();
     outcome.fault = word(session.failure()->fault());
   }

@@ -42,6 +42,8 @@ class Session {
   /// A failure is forgotten: a path is driven once to find its length, and once for its rows.
   void forget_failure() { failure_.reset(); }
   const std::optional<Failure>& failure() const { return failure_; }
+  /// Whether the last call asked for a smaller increment.
+  bool wants_less() const { return wants_less_; }
   bool checks_tangent() const { return checks_; }
   const Layout& layout() const { return at_; }
   long tangents_checked = 0, tangents_off = 0;
@@ -60,6 +62,7 @@ class Session {
   Call last_;
   Answer answer_;
   bool has_answer_ = false;
+  bool wants_less_ = false;
 };
 
 /// The law. As far as the driver's way of integrating goes it has no rate form, so that the driver
@@ -113,11 +116,9 @@ struct PointLaw {
       if (spent != nullptr) {
         const Layout& in = session.layout();
         const double work = 0.5 * contract(call.stress + answer->stress, call.strain);
-        const auto change = [&](std::size_t i) {
-          return answer->state[in.own(i)] - call.state[in.own(i)];
-        };
-        spent->plastic =
-            answer->state[in.own(umat::spent)] != 0.0 ? change(umat::spent) : work - change(stored);
+        const std::size_t spd = in.own(umat::spent), sse = in.own(stored);
+        spent->plastic = spent_in_step(call.state[spd], answer->state[spd], call.state[sse],
+                                       answer->state[sse], work);
         if (session.checks_tangent()) session.check_tangent();
       }
     return false;

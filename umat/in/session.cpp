@@ -74,7 +74,8 @@ const Session::Answer* Session::update(const Call& call) {
   put(call, call.strain, 0);
   if (!run(1)) return nullptr;
   const PointRecord& record = (*host_)->exchange().point(0);
-  if (record.pnewdt < 1.0) return nullptr;
+  wants_less_ = record.pnewdt < 1.0;
+  if (wants_less_) return nullptr;
   last_ = call;
   answer_.stress = stress_from<6>(record.stress);
   answer_.state = call.state;

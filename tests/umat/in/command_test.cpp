@@ -1,11 +1,14 @@
 /// UMATs from input files: what `repose` says of mistakes, what a run keeps when a library fails,
 /// and that results do not depend on threads or interruptions.
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "io/json.hpp"
 #include "tests/scratch_folder.hpp"
@@ -82,6 +85,10 @@ TEST_F(UmatCommand, MistakesAreTold) {
       {"libvon_mises.so", OTHER_NAME, {":3:", "no function umat_", "UMAT"}},
       {"libvon_mises.so", REPOSE_SOURCE_DIR "/README.md", {":3:", "cannot be loaded"}},
       {"\"H\"]", "\"H\", \"G\"]", {":5:", "5 names for 4 props"}},
+      {"\"H\"]", "\"\"]", {":5:", "\"\" for PROPS(4) is no key"}},
+      {"\"H\"]", "\"e e\"]", {":5:", "\"e e\" for PROPS(4) is no key"}},
+      {"\"H\"]", "\"statev\"]", {":5:", "\"statev\" is a key of every umat"}},
+      {"libvon_mises.so", "/dev/zero", {":3:", "no regular file"}},
       {"statev = 1", "statev = -1", {":6:", "statev", "from 0 to 53", "-1"}},
       {"statev = 1", "statev = 54", {":6:", "from 0 to 53"}},
       {"statev = 1", "state = 1", {":6:", "state", "did you mean", "statev"}},
@@ -254,6 +261,45 @@ TEST_F(UmatCommand, FailureInARunKeepsItsState) {
     EXPECT_FALSE(content_of(scratch.path() / ("run" + deed) / "series.csv").empty());
     EXPECT_TRUE(std::filesystem::exists(scratch.path() / ("run" + deed) / "checkpoint.h5"));
   }
+}
+
+/// Processes whose command line holds a text.
+std::size_t processes_with(const std::string& text) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream in(entry.path() / "cmdline", std::ios::binary);
+    const std::string line{std::istreambuf_iterator<char>(in), {}};
+    count += line.find(text) != std::string::npos ? 1U : 0U;
+  }
+  return count;
+}
+
+TEST_F(UmatCommand, AKilledReposeLeavesNoProcessBehind) {
+  const std::string library = folder("libendless.so");
+  std::filesystem::copy_file(MISBEHAVING, library);
+  const std::string file =
+      write("endless.toml", with(with(with(point_test, "libvon_mises.so", library),
+                                      "[1e7, 0.25, 2e4, 1e6]", "[3.0, 5.0]"),
+                                 "names = [\"E\", \"nu\", \"sigma_y\", \"H\"]\n", ""));
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const int nowhere = ::open("/dev/null", O_WRONLY);
+    ::dup2(nowhere, 1);
+    ::dup2(nowhere, 2);
+    ::execl(REPOSE_COMMAND, REPOSE_COMMAND, "point", file.c_str(), "--no-plot", "-o",
+            folder("endless").c_str(), nullptr);
+    ::_exit(127);
+  }
+  const auto wait_for = [&](std::size_t count) {  // for ten seconds at most
+    for (int i = 0; i < 1000 && processes_with(library) != count; ++i) ::usleep(10'000);
+    return processes_with(library) == count;
+  };
+  EXPECT_TRUE(wait_for(1)) << "the library never ran";
+  ::usleep(300'000);  // into the loop
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_TRUE(wait_for(0)) << "its process lives on";
 }
 
 const std::string fit = R"([law]

@@ -329,5 +329,16 @@ TEST(UmatStart, TakesVoidRatioDensityAndStress) {
   EXPECT_THROW(make_known(d), InputError);
 }
 
+// A row of a curve carries four variables of a law, however many it has: the start of a path reads
+// its figures all the same, and writes beyond nothing (address sanitizer).
+TEST(UmatState, MayBeMoreThanARowCarries) {
+  const TestLaw law = make_law(describe(VON_MISES, 4, most_statev), {1e7, 0.25, 2e4, 1e6}, 1700.0);
+  const point::PointTest test = triaxial(1e5, 0.01, 5);
+  EXPECT_EQ(point::start_value(*law.info, law.theta, test, point::Quantity::density), 1700.0);
+  EXPECT_DOUBLE_EQ(point::start_value(*law.info, law.theta, test, point::Quantity::p), 1e5);
+  point::Curve curve;
+  EXPECT_EQ(point::simulate(*law.info, law.theta, test, curve).status, point::Status::completed);
+}
+
 }  // namespace
 }  // namespace repose::umat

@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(fate.param.word) + "_" + std::to_string(fate.param.deed);
     });
 
-// PNEWDT < 1 is no failure of the library: the step is halved, and in vain 30 times.
+// PNEWDT < 1 halves the step; 30 times in vain is the library's failure.
 TEST(UmatPnewdt, BelowOneCutsTheStep) {
   const point::PointTest test = triaxial(1e5, 0.01, 2);  // steps of 5e-4, and 1e-4 is allowed
   TestLaw law = misbehaving(half_increments, 0);
@@ -106,8 +106,11 @@ TEST(UmatPnewdt, BelowOneCutsTheStep) {
   // elastic, ν = 0: E ε, whatever the steps; 160 steps met to 1e-10 of 2e5 Pa
   EXPECT_NEAR(-curve.rows.back().stress[1] - 1e5, 1e7 * 0.01, 160 * 1e-10 * 2e5);
   law = misbehaving(smaller_for_ever, 26);
-  EXPECT_EQ(point::simulate(*law.info, law.theta, triaxial(1e5, 0.01, 10), curve).status,
-            Status::not_converged);
+  const point::PointTest vain = triaxial(1e5, 0.01, 10);
+  EXPECT_EQ(point::simulate(*law.info, law.theta, vain, curve).status, Status::law_failed);
+  EXPECT_EQ(curve.outcome.fault, "umat_not_converged");
+  EXPECT_NE(point::explain(*law.info, law.theta, vain, curve).find("ever smaller increments"),
+            std::string::npos);
 }
 
 // A child of the library's process ends without a word: the path is that of a library without one.
