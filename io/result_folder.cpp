@@ -188,6 +188,12 @@ void ResultFolder::remove_old_parts() const {
                        [](std::string_view name) { return is_frame_file(std::string(name)); });
 }
 
+void ResultFolder::remove_checkpoints() const {
+  std::error_code ignored;  // a checkpoint too many harms nothing
+  fs::remove(checkpoint(), ignored);
+  fs::remove(previous_checkpoint(), ignored);
+}
+
 namespace {
 
 constexpr const char* manifest_name = "manifest.json";

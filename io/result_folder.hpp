@@ -36,6 +36,9 @@ class ResultFolder {
   /// Removes only what killed processes left of files that were being written.
   void remove_old_parts() const;
 
+  /// Removes both checkpoints, if they are there: of a result that is done.
+  void remove_checkpoints() const;
+
   /// Declares the result complete: writes manifest.json with the length and the checksum of every
   /// file of it (of frames, which have their own, the length), and names the results in runs/,
   /// which have one of their own. Errors: IoError.

@@ -1,4 +1,5 @@
 #include "app/commands/command.hpp"
+#include "input/input_file.hpp"
 #include "input/law_tables.hpp"
 #include "umat/out/tables.hpp"
 

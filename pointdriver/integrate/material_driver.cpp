@@ -76,8 +76,6 @@ struct SmallBatch {
 /// A law whose physics is that of the Material being driven. To the integrator it is one whose
 /// stress follows from the update alone: it has no rate form.
 struct DrivenLaw : LawDefaults {
-  static constexpr std::string_view name = "driven_material";
-  static constexpr std::string_view doc = "the law of a Material";
   static constexpr bool has_stress_memory = false;
   static constexpr std::array<ParamInfo, 2> parameters{
       {{"rho_p", "rho_p", "kg/m3", "of the grains", Need::optional},

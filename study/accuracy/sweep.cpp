@@ -314,7 +314,7 @@ io::ExitCode carry_out(SweepRun& run, const fs::path& folder, int threads, bool 
     const io::ExitCode code = run_scene(request);
     if (code == io::ExitCode::interrupted) return code;
   } else {
-    const io::FolderClaim claim{io::ResultFolder(request.folder)};  // removes what a kill has left
+    tidy_finished(io::ResultFolder(request.folder));
   }
   read_result(run, request.folder);
   return io::ExitCode::done;

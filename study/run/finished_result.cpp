@@ -29,6 +29,15 @@ bool is_finished(const io::ResultFolder& folder, std::string_view input) {
   return false;
 }
 
+void tidy_finished(const io::ResultFolder& folder) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(folder.file(".repose-lock")) && !fs::exists(folder.checkpoint()) &&
+      !fs::exists(folder.previous_checkpoint()))
+    return;  // it may lie where nothing can be written
+  const io::FolderClaim claim(folder);  // takes the lock with it when it ends
+  folder.remove_checkpoints();
+}
+
 RunSummary read_summary(const std::filesystem::path& file) {
   const auto json = io::Json::try_parse(text_of(file));
   if (!json || !json->is_object()) throw io::IoError(file, "is not the summary of a run");

@@ -14,6 +14,10 @@ namespace repose::study {
 /// written is none, and the standard error output says so.
 bool is_finished(const io::ResultFolder& folder, std::string_view input);
 
+/// Removes what a kill between the seal of a result and the end of its process has left: the lock
+/// and the checkpoints. Errors: IoError if another process has the folder.
+void tidy_finished(const io::ResultFolder& folder);
+
 /// A file as text; "" if it cannot be read.
 std::string text_of(const std::filesystem::path& file);
 

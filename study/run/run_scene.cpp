@@ -12,6 +12,7 @@
 #include "io/json.hpp"
 #include "mpm/output/frame_fields.hpp"
 #include "mpm/study/needs.hpp"
+#include "study/run/finished_result.hpp"
 #include "study/run/output_schedule.hpp"
 #include "study/run/run_record.hpp"
 
@@ -321,9 +322,7 @@ io::ExitCode Run::finish() {
   const bool drawn = write_picture();
   write_summary("done", "");
   folder_.seal();
-  std::error_code ignored;
-  fs::remove(folder_.checkpoint(), ignored);  // of what is made good
-  fs::remove(folder_.previous_checkpoint(), ignored);
+  folder_.remove_checkpoints();
 
   const double wall = record_.wall_s + usage().wall_s - begun_.wall_s;
   voice_.event(
@@ -390,8 +389,7 @@ io::ExitCode run_scene(const RunRequest& request) {
       const std::string damage = done ? folder.damage() : "";
       if (!damage.empty()) voice.warn(fmt::format("{}: {}", asked.folder.string(), damage));
       if (done && damage.empty()) {
-        // killed between its last file and the end of its claim: what is left of the lock goes
-        if (fs::exists(folder.file(".repose-lock"))) const io::FolderClaim claim(folder);
+        tidy_finished(folder);
         voice.event({{"event", "end"}, {"status", "done"}, {"exit", 0}});
         voice.say(fmt::format("{} is complete: nothing to resume\n", asked.folder.string()));
         return io::ExitCode::done;

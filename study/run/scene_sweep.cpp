@@ -32,7 +32,7 @@ io::ExitCode SceneSweep::run(const io::ResultFolder& folder, int threads, std::u
       request.quiet = true;
       const io::ResultFolder there(request.folder);
       if (resume && is_finished(there, one.input)) {
-        const io::FolderClaim claim(there);  // removes what a kill has left of the lock
+        tidy_finished(there);
       } else {
         request.resume = resume && text_of(there.file("input.toml")) == one.input;
         if (run_scene(request) == io::ExitCode::interrupted) return io::ExitCode::interrupted;

@@ -254,6 +254,20 @@ TEST_P(VerbTest, KilledAtAnyMomentAndResumedGivesTheSameFigures) {
               GetParam().name.c_str(), killed, interrupted, runs);
 }
 
+// A kill between the seal of a run and the end of its process leaves the checkpoints and the lock.
+class RunsTest : public VerbTest {};  // of the verbs that keep the results of single runs
+
+TEST_P(RunsTest, WhatAFinishedRunNoLongerNeedsGoes) {
+  ASSERT_EQ(run("whole"), 0);
+  const auto straight = figures_of(folder() / "whole");
+  fs::remove(folder() / "whole/manifest.json");
+  for (const auto& one : fs::directory_iterator(folder() / "whole/runs"))
+    for (const char* name : {"checkpoint.h5", "checkpoint_previous.h5", ".repose-lock"})
+      std::ofstream(one.path() / name) << "of a moment before the end";
+  ASSERT_EQ(run("whole", true), 0);
+  expect_same(figures_of(folder() / "whole"), straight, "whole");
+}
+
 TEST_P(VerbTest, ADamagedResultIsNotTakenForOne) {
   ASSERT_EQ(run("whole"), 0);
   const auto before = figures_of(folder() / "whole");
@@ -339,6 +353,8 @@ TEST_P(VerbTest, AFolderThatTakesNothingIsSaid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, VerbTest, testing::ValuesIn(verbs()),
+                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Sweeping, RunsTest, testing::Values(verbs()[0], verbs()[3]),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
