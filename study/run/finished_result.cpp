@@ -33,7 +33,7 @@ void tidy_finished(const io::ResultFolder& folder) {
   namespace fs = std::filesystem;
   if (!fs::exists(folder.file(".repose-lock")) && !fs::exists(folder.checkpoint()) &&
       !fs::exists(folder.previous_checkpoint()))
-    return;  // it may lie where nothing can be written
+    return;                             // it may lie where nothing can be written
   const io::FolderClaim claim(folder);  // takes the lock with it when it ends
   folder.remove_checkpoints();
 }
