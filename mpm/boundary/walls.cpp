@@ -16,6 +16,10 @@ struct Parts {
     for (std::size_t i = 0; i < r.t.size(); ++i) r.t[i] = x.t[i] - y.t[i];
     return r;
   }
+  void add(double factor, const Parts& x) {
+    n += factor * x.n;
+    for (std::size_t i = 0; i < t.size(); ++i) t[i] += factor * x.t[i];
+  }
   friend double dot(const Parts& x, const Parts& y) {
     double sum = x.n * y.n;
     for (std::size_t i = 0; i < x.t.size(); ++i) sum += x.t[i] * y.t[i];
@@ -106,6 +110,21 @@ struct Triple {
   }
 };
 
+/// `mirrored`, moved so that it has the momentum of `velocity`.
+template <int dim>
+Triple<dim> with_momentum_of(const Triple<dim>& velocity, Triple<dim> mirrored,
+                             const std::array<double, 3>& m) {
+  const double mass = m[0] + m[1] + m[2];
+  if (mass == 0.0) return mirrored;
+  const Triple<dim> lost = velocity - mirrored;
+  Parts<dim> mean;
+  mean.add(m[0] / mass, lost.a);
+  mean.add(m[1] / mass, lost.b);
+  mean.add(m[2] / mass, lost.c);
+  for (Parts<dim>* parts : {&mirrored.a, &mirrored.b, &mirrored.c}) parts->add(1.0, mean);
+  return mirrored;
+}
+
 /// The share φ of sticking: from the impulses of the wall on the material, that is from its
 /// momentum without and with the constraint. Negative: parting, the wall cannot pull.
 template <int dim>
@@ -138,18 +157,21 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>&
     stick = coulomb_share(v, m_a, m_b, m_c, wall.friction, inward);
     if (stick < 0.0) return {};
   }
+  const std::array<double, 3> m{a.real_mass(), b.real_mass(), c.real_mass()};
+  const bool gives_impulses = wall.kind == Wall::Kind::friction;
   if (record != nullptr) {
     const auto place = [](const WallNode<dim>& n) {
       return MirroredTriple::Node{n.index, static_cast<std::int32_t>(n.place)};
     };
-    record->push_back({{place(a), place(b), place(c)}, a.normal == 0, m_a, m_c, stick});
+    record->push_back({{place(a), place(b), place(c)}, a.normal == 0, m_a, m_c, stick, {}});
+    if (gives_impulses) record->back().conserves = m;
   }
   const Triple<dim> u_new = u.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
   const Triple<dim> v_new = v.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
-  a.set(m_a + m_c, u_new.a, v_new.a);
-  b.set(2.0 * m_b, u_new.b, v_new.b);
-  c.set(m_a + m_c, u_new.c, v_new.c);
-  const std::array<double, 3> m{a.real_mass(), b.real_mass(), c.real_mass()};
+  const Triple<dim> u_left = gives_impulses ? with_momentum_of(u, u_new, m) : u_new;
+  a.set(m_a + m_c, u_left.a, v_new.a);
+  b.set(2.0 * m_b, u_left.b, v_new.b);
+  c.set(m_a + m_c, u_left.c, v_new.c);
   const auto inner = [&](const Triple<dim>& x, const Triple<dim>& y) {
     return m[0] * dot(x.a, y.a) + m[1] * dot(x.b, y.b) + m[2] * dot(x.c, y.c);
   };
@@ -157,8 +179,11 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>&
   const auto dragged = [&](const Triple<dim>& x) {
     return m[0] * x.a.t[0] + m[1] * x.b.t[0] + m[2] * x.c.t[0];
   };
-  return {0.5 * (inner(u_new, u_new) - inner(u, u)), 0.5 * (inner(v_new, v_new) - inner(v, v)),
-          inner(kick, u_new - u), wall.speed * dragged(u_new - u), wall.speed * dragged(v_new - v)};
+  WallEffect effect{0.5 * (inner(u_new, u_new) - inner(u, u)),
+                    0.5 * (inner(v_new, v_new) - inner(v, v)), inner(kick, u_new - u),
+                    wall.speed * dragged(u_new - u), wall.speed * dragged(v_new - v)};
+  if (gives_impulses) effect.friction = effect.kinetic_before + 0.5 * effect.impulse_work;
+  return effect;
 }
 
 /// A wall across an axis, at the node index `line` of it.
@@ -219,8 +244,9 @@ void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity) {
       const double* n = component(k, at.normal_is_x);
       return n != nullptr ? Parts<2>{*n, {*component(k, !at.normal_is_x)}} : Parts<2>{};
     };
-    const Triple<2> mirrored =
-        Triple<2>{read(0), read(1), read(2)}.mirrored(at.m_a, at.m_c, at.stick);
+    const Triple<2> given{read(0), read(1), read(2)};
+    Triple<2> mirrored = given.mirrored(at.m_a, at.m_c, at.stick);
+    if (at.conserves) mirrored = with_momentum_of(given, mirrored, *at.conserves);
     const auto write = [&](std::size_t k, const Parts<2>& v) {
       if (at.node[k].block < 0) return;
       *component(k, at.normal_is_x) = v.n;

@@ -10,9 +10,17 @@
 ///   slip:     normal odd, tangential even
 ///   no slip:  both odd, the tangential one about the wall's own speed
 ///   friction: free if nothing presses on the wall; else normal odd, tangential a mixture of even
-///   and
-///             odd with the share φ = min(1, friction J_n/J_t) of the impulse J_t that would stop
-///             it
+///             and odd with the share φ = min(1, friction J_n/J_t) of the impulse J_t that would
+///             stop it
+///
+/// Points that keep something of their own velocity take the increment v − u from the grid. Slip
+/// and no slip hold at every moment: of u they leave what they admit, and what of the points'
+/// velocity they do not admit is nobody's motion. A frictional wall gives its impulse once, and the
+/// increment must carry it: here u is mirrored without loss of momentum, by a translation U of the
+/// three nodes with Σm(u + U) as it was, so that Σm(v − u) is the impulse of the forces and of the
+/// wall.
+
+#include <optional>
 
 #include "mpm/grid/grid.hpp"
 #include "mpm/scene/scene.hpp"
@@ -35,6 +43,8 @@ struct WallEffect {
   double impulse_work = 0.0;  ///< change of ΔtΣ(f + mg)·u: what the forces do on u in one step [J]
   /// Change of Σmu and Σmv along a wall that moves, times its speed: the work of dragging [J].
   double drag_before = 0.0, drag_after = 0.0;
+  /// Of kinetic_before + ½ impulse_work, what frictional walls do: no point keeps any of it [J]
+  double friction = 0.0;
 
   WallEffect& operator+=(const WallEffect& other) {
     kinetic_before += other.kinetic_before;
@@ -42,6 +52,7 @@ struct WallEffect {
     impulse_work += other.impulse_work;
     drag_before += other.drag_before;
     drag_after += other.drag_after;
+    friction += other.friction;
     return *this;
   }
 };
@@ -56,6 +67,8 @@ struct MirroredTriple {
   bool normal_is_x = true;
   double m_a = 0.0, m_c = 0.0;  ///< masses behind and inside, as they weigh here [kg/m]
   double stick = 0.0;           ///< 0: tangential even, 1: odd
+  /// Of a frictional wall, which mirrors u without loss of momentum: masses as they are [kg/m]
+  std::optional<std::array<double, 3>> conserves;
 };
 
 /// Applies the walls to the node velocities before and after forces. `record`, if given, is filled

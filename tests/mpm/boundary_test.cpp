@@ -46,6 +46,32 @@ TEST(FrictionWallTest, ABlockSlidesAgainstItsFriction) {
   }
 }
 
+// The same with every transfer: the wall's impulse reaches the points whatever they keep of their
+// own velocity (walls.hpp). Only the bounce differs, which some damp and some do not.
+TEST(FrictionWallTest, RubsAlikeInEveryTransfer) {
+  const double f = 0.4, t = 0.4;
+  const double a = g * (std::sin(slope) - f * std::cos(slope));
+  for (std::size_t k = 0; k < transfer_names.size(); ++k) {
+    Scene scene = block_on_incline({Wall::Kind::friction, f});
+    scene.transfer = static_cast<Transfer>(k);
+    Simulation simulation(scene, 1);
+    run_until(simulation, t);
+    const SeriesRow row = simulation.diagnostics();
+    const double bounce = std::abs(row.momentum_y) / row.mass_kg_per_m;
+    EXPECT_NEAR(row.momentum_x / row.mass_kg_per_m, a * t,
+                f * (bounce + 0.006 * g * std::cos(slope)))
+        << transfer_names[k];
+    const double friction_work = f * row.mass_kg_per_m * g * std::cos(slope) * 0.5 * a * t * t;
+    EXPECT_NEAR(row.wall_loss_J_per_m, friction_work, 0.03 * friction_work + 1e-3)
+        << transfer_names[k];
+    const double drop = friction_work + 0.5 * row.mass_kg_per_m * a * t * a * t;
+    EXPECT_LT(std::abs(row.energy_residual_J_per_m), 0.02 * drop) << transfer_names[k];
+    std::printf("[ measured ] %s: v - at = %.2g m/s, bounce %.2g m/s, work/exact - 1 = %.2g %%\n",
+                transfer_names[k].data(), row.momentum_x / row.mass_kg_per_m - a * t, bounce,
+                100.0 * (row.wall_loss_J_per_m / friction_work - 1.0));
+  }
+}
+
 // With f > tanθ = 0.577 the block stays where it has landed, as it does on a floor without slip.
 TEST(FrictionWallTest, ABlockSticksBelowItsFriction) {
   const auto base = [](const Simulation& simulation) {

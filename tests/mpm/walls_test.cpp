@@ -80,6 +80,20 @@ class WallsTest : public ::testing::TestWithParam<Kernel> {
       }
     return s;
   }
+  std::array<double, 2> momentum_before_forces() const {
+    std::array<double, 2> p{};
+    for (const NodeBlock& nb : grid_.node_blocks)
+      for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t n = 0; n < block_nodes; ++n) p[i] += nb.mass[n] * nb.u[i][n];
+    return p;
+  }
+  std::vector<double> velocities_after_forces() const {
+    std::vector<double> all;
+    for (const NodeBlock& nb : grid_.node_blocks)
+      for (const auto* values : {&nb.v[0], &nb.v[1]})
+        all.insert(all.end(), values->begin(), values->end());
+    return all;
+  }
   std::vector<double> node_velocities() const {
     std::vector<double> all;
     for (const NodeBlock& nb : grid_.node_blocks)
@@ -294,10 +308,26 @@ TEST_P(WallsTest, FrictionWithinItsLimitIsNoSlip) {
   const Motion v = [](double, double) { return reference::Vector{0.1, -0.5}; };
   fill(v);
   apply_walls(grid_, {open, open, {Wall::Kind::friction, 0.9}, open});
-  const std::vector<double> stuck = node_velocities();
+  const std::vector<double> stuck = velocities_after_forces();
   fill(v);
   apply_walls(grid_, {open, open, no_slip, open});
-  EXPECT_EQ(node_velocities(), stuck);
+  EXPECT_EQ(velocities_after_forces(), stuck);
+}
+
+// Friction's impulse belongs to the step, and v − u carries all of it: u keeps its momentum.
+TEST_P(WallsTest, FrictionLeavesTheMomentumBeforeForces) {
+  for (const double f : {0.0, 0.3, 0.9}) {
+    fill([](double x, double) { return reference::Vector{0.8 + 0.1 * x, -0.5}; });
+    const std::vector<double> before = node_velocities();
+    const std::array<double, 2> start = momentum_before_forces();
+    const Wall rough{Wall::Kind::friction, f};
+    apply_walls(grid_, {open, open, rough, open});
+    EXPECT_NE(node_velocities(), before);
+    const std::array<double, 2> end = momentum_before_forces();
+    // 1300 nodes: the mirror and the way back round 6 times each
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_NEAR(end[i], start[i], 12.0 * 2.3e-16 * (std::abs(start[0]) + std::abs(start[1])));
+  }
 }
 
 // What the walls did to the velocities before forces, done again from the record. The rough walls
