@@ -179,11 +179,15 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>&
   const auto dragged = [&](const Triple<dim>& x) {
     return m[0] * x.a.t[0] + m[1] * x.b.t[0] + m[2] * x.c.t[0];
   };
-  WallEffect effect{0.5 * (inner(u_new, u_new) - inner(u, u)),
-                    0.5 * (inner(v_new, v_new) - inner(v, v)), inner(kick, u_new - u),
-                    wall.speed * dragged(u_new - u), wall.speed * dragged(v_new - v)};
-  if (gives_impulses) effect.friction = effect.kinetic_before + 0.5 * effect.impulse_work;
-  return effect;
+  const double kinetic_after = 0.5 * (inner(v_new, v_new) - inner(v, v));
+  if (gives_impulses) {
+    WallEffect effect;
+    effect.kinetic_after = kinetic_after;
+    effect.impulses = 0.5 * (inner(v_new - v, u) + inner(v_new - v, v_new));
+    return effect;
+  }
+  return {0.5 * (inner(u_new, u_new) - inner(u, u)), kinetic_after, inner(kick, u_new - u),
+          wall.speed * dragged(u_new - u), wall.speed * dragged(v_new - v)};
 }
 
 /// A wall across an axis, at the node index `line` of it.

@@ -43,8 +43,8 @@ struct WallEffect {
   double impulse_work = 0.0;  ///< change of ΔtΣ(f + mg)·u: what the forces do on u in one step [J]
   /// Change of Σmu and Σmv along a wall that moves, times its speed: the work of dragging [J].
   double drag_before = 0.0, drag_after = 0.0;
-  /// Of kinetic_before + ½ impulse_work, what frictional walls do: no point keeps any of it [J]
-  double friction = 0.0;
+  /// Σ J·½(u + v): the work of the impulses J that a frictional wall gives, which leave u alone [J]
+  double impulses = 0.0;
 
   WallEffect& operator+=(const WallEffect& other) {
     kinetic_before += other.kinetic_before;
@@ -52,7 +52,7 @@ struct WallEffect {
     impulse_work += other.impulse_work;
     drag_before += other.drag_before;
     drag_after += other.drag_after;
-    friction += other.friction;
+    impulses += other.impulses;
     return *this;
   }
 };

@@ -44,11 +44,10 @@ void Simulation::Impl<dim>::close_ledger() {
       nodes.after + wall_effect_.kinetic_after + viscous_effect_.kinetic - kinetic;
   const double mirrored = wall_effect_.kinetic_before + 0.5 * wall_effect_.impulse_work;
   const Retention keep = retention(last_dt);
-  // what points keep, no mirror takes, but for what friction does; nor, beyond first order, what an
-  // extension gives back
-  const double kept = (keep.extended ? 1.0 : keep.velocity) * (mirrored - wall_effect_.friction);
+  // what points keep, no mirror takes; nor, beyond first order, what an extension gives back
+  const double kept = (keep.extended ? 1.0 : keep.velocity) * mirrored;
   ledger.transfer_loss += points_to_nodes + nodes_to_points + nodes.extension_work - kept;
-  ledger.wall_loss -= mirrored - kept;
+  ledger.wall_loss -= mirrored - kept + wall_effect_.impulses;
   ledger.wall_loss -= wall_effect_.drag_after - wall_effect_.drag_before;
   ledger.kinetic = kinetic;
   ledger.power = power;

@@ -37,8 +37,8 @@ TEST(FrictionWallTest, ABlockSlidesAgainstItsFriction) {
     EXPECT_NEAR(row.momentum_x / m, a * t, f * (bounce + 0.006 * g * std::cos(slope)) + 1e-12);
     const double way = points_of(simulation)[0][X] - start;
     EXPECT_NEAR(way, 0.5 * a * t * t, 0.01 * way);
-    // the ledger knows where the energy went; 3 %: the loss is booked with the velocity at the
-    // start of a step, and the edges rub a little less
+    // the ledger knows where the energy went; 3 %: the bounce has rubbed as well, and the
+    // edges rub a little less
     const double friction_work = f * m * g * std::cos(slope) * way;
     EXPECT_NEAR(row.wall_loss_J_per_m, friction_work, 0.03 * friction_work + 1e-3);
     const double drop = 0.5 * m * a * t * a * t + friction_work;
