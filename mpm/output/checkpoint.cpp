@@ -16,7 +16,7 @@
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 5;
+constexpr std::int64_t format_version = 6;
 
 /// An open HDF5 object, closed by its own function.
 class Handle {
@@ -99,6 +99,7 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   real(s.ledger.density_floor);
   real(s.ledger.transfer_loss);
   real(s.ledger.wall_loss);
+  real(s.ledger.surface_work);
   real(s.ledger.outflow);
   real(s.ledger.outflow_elastic);
   real(s.ledger.outflow_mass);

@@ -131,6 +131,16 @@ bool within_shape(const Body& body, const std::array<double, dim>& x) {
   return r >= body.disc->hole && r < body.disc->radius;
 }
 
+/// The rigid surfaces cut the bodies.
+template <int dim>
+bool behind_a_surface(const Scene& scene, const std::array<double, dim>& x) {
+  Position place{};
+  for (std::size_t i = 0; i < dim; ++i) place[i] = x[i];
+  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& surface) {
+    return surface.nearest_at(0.0, place).distance < 0.0;
+  });
+}
+
 }  // namespace
 
 double overburden(const Material& material, double ocr, double K0, double g, double z, int steps,
@@ -176,14 +186,20 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
 
   points.single = scene.storage == Storage::single_precision;
 
-  const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
+  std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
+  std::array<double, 3> origin = body.origin, spacing{};
+  for (std::size_t i = 0; i < dim; ++i) spacing[i] = body.size[i] / static_cast<double>(lattice[i]);
+  if (body.polygon)  // cut out of the grid's own lattice
+    for (std::size_t i = 0; i < 2; ++i) {
+      spacing[i] = point_spacing(scene);
+      const double first = std::floor(body.origin[i] / spacing[i]);
+      origin[i] = first * spacing[i];
+      lattice[i] = std::llround(
+          std::ceil((body.origin[i] + body.size[i]) / spacing[i] - lattice_tolerance) - first);
+    }
   points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
-  std::array<double, 3> spacing{};
   double volume = 1.0;
-  for (std::size_t i = 0; i < dim; ++i) {
-    spacing[i] = body.size[i] / static_cast<double>(lattice[i]);
-    volume *= spacing[i];
-  }
+  for (std::size_t i = 0; i < dim; ++i) volume *= spacing[i];
   const double g = scene.gravity * std::cos(scene.tilt_deg * std::numbers::pi / 180.0);
   const double K0 = body.initial.K0.value_or(1.0);
 
@@ -193,7 +209,7 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   InitialPoint uniform;
   if (!body.lithostatic) uniform = initial(body.initial);
   const auto coordinate = [&](std::size_t axis, std::int64_t n) {
-    return body.origin[axis] + (static_cast<double>(n) + 0.5) * spacing[axis];
+    return origin[axis] + (static_cast<double>(n) + 0.5) * spacing[axis];
   };
   // what stands on each column of the lattice
   std::vector<double> load(static_cast<std::size_t>(lattice[0] * lattice[2]), 0.0);
@@ -228,8 +244,18 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
         }
         std::array<double, dim> x{coordinate(0, i), y};
         if constexpr (dim == 3) x[2] = coordinate(2, k);
-        if (!within_shape<dim>(body, x)) continue;
-        append<dim>(points, x, body, at, volume,
+        double here_volume = volume;
+        if (body.polygon) {
+          const Piece piece =
+              piece_of(clipped(*body.polygon, {x[0] - 0.5 * spacing[0], x[1] - 0.5 * spacing[1]},
+                               {x[0] + 0.5 * spacing[0], x[1] + 0.5 * spacing[1]}));
+          if (piece.area < 1e-12 * volume) continue;
+          x[0] = piece.centroid[0];
+          x[1] = piece.centroid[1];
+          here_volume = piece.area;
+        }
+        if (!within_shape<dim>(body, x) || behind_a_surface<dim>(scene, x)) continue;
+        append<dim>(points, x, body, at, here_volume,
                     first_id + static_cast<std::int64_t>(points.count));
       }
   }

@@ -1,5 +1,6 @@
 #include "mpm/scene/scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -46,6 +47,17 @@ void set_cylinder(Body& body, const Disc& disc, double base, double height) {
   }
   body.origin[1] = base;
   body.size[1] = height;
+}
+
+void set_polygon(Body& body, const Polygon& polygon) {
+  body.polygon = polygon;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto [least, most] =
+        std::minmax_element(polygon.corners.begin(), polygon.corners.end(),
+                            [k](const auto& a, const auto& b) { return a[k] < b[k]; });
+    body.origin[k] = (*least)[k];
+    body.size[k] = (*most)[k] - (*least)[k];
+  }
 }
 
 bool raise_top_to_cells(Scene& scene) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "models/registry.hpp"
+#include "mpm/scene/solid.hpp"
 
 namespace repose::mpm {
 
@@ -41,6 +42,9 @@ struct Body {
   std::array<double, 3> size{};    ///< [m]
   /// Only the points in it; origin and size bound it: set_disc(), set_cylinder()
   std::optional<Disc> disc;
+  /// Only what of its lattice cells lies in it, in the plane; origin and size bound it:
+  /// set_polygon()
+  std::optional<Polygon> polygon;
   std::array<double, 3> velocity{};  ///< initial velocity [m/s]
   double spin = 0.0;  ///< initial angular velocity about z, through the body's centre [rad/s]
   LawSpec law;
@@ -116,6 +120,7 @@ struct Scene {
   Wall far{Wall::Kind::slip};   ///< at the other end of z
 
   std::vector<Body> bodies;
+  std::vector<Surface> surfaces;  ///< rigid; bodies are cut by them
 
   double h = 0.0;           ///< cell size [m]
   int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16; in space a cube: 1, 8, 27
@@ -169,6 +174,9 @@ void set_disc(Body& body, const Disc& disc);
 /// x = 0 or z = 0, that wall cuts it in half: its origin and size are those of the box around what
 /// is left.
 void set_cylinder(Body& body, const Disc& disc, double base, double height);
+
+/// Makes a body a polygon: its origin and size become those of the box around it.
+void set_polygon(Body& body, const Polygon& polygon);
 
 /// Points of a body along x, y and z (1 in the plane): its size over point_spacing(), which
 /// validate() has found whole.

@@ -232,7 +232,7 @@ void check_geometry(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t k = 0; k < scene.dimensions(); ++k) {
       const double size = scene.bodies[i].size[k];
-      if (is_whole_multiple(size, spacing)) continue;
+      if (scene.bodies[i].polygon || is_whole_multiple(size, spacing)) continue;
       const std::string near = nearby_h(scene, true);
       throw InputError(path_of(i, "size"), "the points cannot represent " + number(size) +
                                                " m along " + axis[k] + " exactly: they stand " +

@@ -80,6 +80,7 @@ void Simulation::Impl<dim>::advance_block(std::size_t block, double dt, const Re
     fill(
         tile.elastic, [](const Nodes& nb) -> const auto& { return nb.extra; });
 
+  const bool near_surface = !contact.empty() && contact.is_near(grid, pb, tiles_time);
   static thread_local AlignedVector<double> scratch;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (pb.range[b].count == 0) continue;
@@ -91,7 +92,7 @@ void Simulation::Impl<dim>::advance_block(std::size_t block, double dt, const Re
     bodies[b].update(pb.range[b], [&](PointsOf<dim>& points, const SlotRange& range) {
       tile_to_points<Kernel, keeps, averages>(tile, tile_origin(pb), grid.h(), range, keep, points,
                                               motion);
-      move(points, range, motion, dt, sums);
+      move(points, range, motion, dt, near_surface, sums);
       strain(points, b, range, motion, dt, scratch.data() + (dim + 1) * n, sums);
     });
   }
@@ -99,7 +100,8 @@ void Simulation::Impl<dim>::advance_block(std::size_t block, double dt, const Re
 
 template <int dim>
 void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
-                                 const MotionOf<dim>& motion, double dt, BlockSums& sums) const {
+                                 const MotionOf<dim>& motion, double dt, bool near_surface,
+                                 BlockSums& sums) const {
   // a closed wall is never crossed: the interpolated velocity vanishes on it, and what round-off or
   // an impact faster than one cell per step does is undone here and counted
   const double hair = 1e-9 * grid.h();
@@ -133,6 +135,13 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
       moved.store_aligned(x);
       near_wall = near_wall || moved < low || moved > Pack(end[i] - hair);
     }
+    if (near_surface)  // the grid's velocity leads along it to second order in h
+      for (std::size_t lane = 0; lane < Pack::size; ++lane) {
+        std::array<double, dim> x;
+        for (std::size_t i = 0; i < dim; ++i) x[i] = points.data(Layout<dim>::x + i)[s + lane];
+        if (contact.keep_out(x, tiles_time, hair))
+          for (std::size_t i = 0; i < dim; ++i) points.data(Layout<dim>::x + i)[s + lane] = x[i];
+      }
     if (!any(near_wall)) continue;
     for (std::size_t lane = 0; lane < Pack::size; ++lane)
       for (std::size_t i = 0; i < dim; ++i)

@@ -24,6 +24,7 @@ struct Ledger {
   double density_floor = 0.0;  ///< taken from the stored energy by the density floor
   double transfer_loss = 0.0;  ///< kinetic energy: points → nodes and nodes → points
   double wall_loss = 0.0;      ///< taken by walls, less what moving walls put in
+  double surface_work = 0.0;   ///< of moving rigid surfaces on the material, part of -wall_loss
   double outflow = 0.0;        ///< kinetic + potential + elastic energy carried out
   double outflow_elastic = 0.0;
   double outflow_mass = 0.0;  ///< [kg/m]

@@ -38,6 +38,7 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     : scene(given),
       gravity(gravity_of<dim>(given)),
       walls{given.left, given.right, given.floor, given.top, given.near, given.far},
+      contact(given.surfaces),
       grid(given.h, cells<dim>(given)),
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
@@ -86,7 +87,9 @@ double Simulation::Impl<dim>::energy_bound() const {
   // the work of these has no bound
   const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
   if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
-      drags(walls.right) || drags(walls.floor) || drags(walls.top))
+      drags(walls.right) || drags(walls.floor) || drags(walls.top) ||
+      std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
+                  [](const Surface& surface) { return surface.moves(); }))
     return HUGE_VAL;
   const double lowest = std::min({0.0, -gravity[0] * scene.domain[0], -gravity[1] * scene.domain[1],
                                   -gravity[0] * scene.domain[0] - gravity[1] * scene.domain[1]});

@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include "mpm/boundary/periodic.hpp"
+#include "mpm/boundary/rigid_contact.hpp"
 #include "mpm/boundary/walls.hpp"
 #include "mpm/grid/grid.hpp"
 #include "mpm/step/implicit_viscosity.hpp"
@@ -39,6 +40,7 @@ class Simulation::Impl {
   double choose_step(double stop_at) const;
   void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
   void update_grid(double dt);      ///< sum tiles, accelerate nodes
+  void apply_boundaries();          ///< surfaces, then the edges of the box
   void measure_signals();           ///< now and then: what the grid sees of them (step_size.hpp)
   void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
   void extend_velocity();           ///< XPIC, FMPM beyond first order (extended_pic.cpp)
@@ -75,6 +77,7 @@ class Simulation::Impl {
   Scene scene;
   std::array<double, dim> gravity{};
   Walls walls;
+  RigidContact<dim> contact;
   std::vector<PointsOf<dim>> bodies;
   std::vector<std::string> body_names;
   GridOf<dim> grid;
@@ -132,8 +135,9 @@ class Simulation::Impl {
                                 std::array<int, 2> origin, Tile& tile) const;
   template <class Kernel, Keeps keeps, bool averages>
   void advance_block(std::size_t block, double dt, const Retention& keep, BlockSums& sums);
+  /// `near_surface`: a rigid surface may be among the points.
   void move(PointsOf<dim>& points, const SlotRange& range, const MotionOf<dim>& motion, double dt,
-            BlockSums& sums) const;
+            bool near_surface, BlockSums& sums) const;
   /// Arrays of a range's length: velocity and mean elastic strain (Motion), and in strain() a
   /// strain, a spin, work and what it is spent on (3), modulus, viscosity and pressure, and where
   /// contacts damp a stress and work.
@@ -186,6 +190,7 @@ class Simulation::Impl {
   std::vector<BlockSums> block_sums_;
   std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
   WallEffect wall_effect_;
+  std::int64_t contact_sorts_ = -1;       ///< the sort whose blocks the contact knows
   std::vector<MirroredTriple> mirrored_;  ///< what the walls did, for the extension
   /// Of the extension: its remainder r, A r, and what it has added up.
   NodeVector remainder_, through_points_, extension_;

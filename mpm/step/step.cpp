@@ -16,16 +16,11 @@ void Simulation::Impl<dim>::step(double stop_at) {
   const double dt = choose_step(stop_at);
   if (!tiles_are_current) points_to_grid();
   update_grid(dt);
+  apply_boundaries();
+  measure_signals();
   if constexpr (dim == 2) {
-    if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
-    const bool extends = retention(dt).extended;
-    wall_effect_ = apply_walls(grid, walls, extends ? &mirrored_ : nullptr);
-    measure_signals();
     solve_viscosity(dt);
-    if (extends) extend_velocity();
-  } else {
-    wall_effect_ = apply_walls(grid, walls);
-    measure_signals();
+    if (retention(dt).extended) extend_velocity();
   }
   tiles_time = time + dt >= stop_at - 1e-9 * dt ? stop_at : time + dt;
   grid_to_points(dt);
@@ -126,6 +121,20 @@ void Simulation::Impl<dim>::update_grid(double dt) {
     }
     node_sums_[k] = {xsimd::hadd(before), xsimd::hadd(after), xsimd::hadd(impulse_work), 0.0};
   });
+}
+
+/// The edges come last: what they ask for holds exactly.
+template <int dim>
+void Simulation::Impl<dim>::apply_boundaries() {
+  if constexpr (dim == 2)
+    if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
+  wall_effect_ = {};
+  if (!contact.empty()) {
+    const bool sorted = std::exchange(contact_sorts_, sorts) != sorts;
+    wall_effect_ += contact.apply(grid, time, sorted, ledger.surface_work);
+  }
+  const bool extends = scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm;
+  wall_effect_ += apply_walls(grid, walls, dim == 2 && extends ? &mirrored_ : nullptr);
 }
 
 template <int dim>

@@ -1,0 +1,81 @@
+#pragma once
+/// \file
+/// Rigid regions by their signed distance, and surfaces made of them.
+
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace repose::mpm {
+
+using Position = std::array<double, 3>;  ///< x, y and in space z [m]
+
+/// All that lies behind a plane (in the plane a line), on the side its normal points away from.
+struct HalfSpace {
+  Position point{};                ///< on the plane [m]
+  Position normal{0.0, 1.0, 0.0};  ///< of any length
+};
+
+/// A sphere, in the plane a disc.
+struct Ball {
+  Position centre{};    ///< [m]
+  double radius = 0.0;  ///< [m]
+};
+
+/// In space, a prism along z without end.
+struct Polygon {
+  std::vector<std::array<double, 2>> corners;  ///< in either sense of rotation [m]
+};
+
+/// Area of a polygon and its centroid.
+struct Piece {
+  double area = 0.0;                 ///< [m²]
+  std::array<double, 2> centroid{};  ///< [m]
+};
+Piece piece_of(const Polygon& polygon);
+/// What of a polygon lies in the rectangle from `low` to `high`; for one that is not convex, pieces
+/// that do not hang together count as one.
+Polygon clipped(const Polygon& polygon, const std::array<double, 2>& low,
+                const std::array<double, 2>& high);
+
+struct Solid {
+  std::variant<HalfSpace, Ball, Polygon> shape;
+  bool hollow = false;  ///< rigid is what lies outside
+};
+
+/// Distance from the surface, negative in the rigid part, and its gradient, which points away from
+/// the rigid part.
+struct Nearest {
+  double distance = 0.0;  ///< [m]
+  Position normal{};
+};
+Nearest nearest(const Solid& solid, const Position& x);
+
+/// A rigid surface, at rest or moving as one.
+struct Surface {
+  enum class Contact {
+    no_slip,   ///< no motion against it
+    slip,      ///< no motion through it nor away from it, free motion along it
+    friction,  ///< unilateral Coulomb contact: no tension, |shear| <= friction × pressure
+  };
+  std::string name;
+  Solid solid;  ///< where it is at the start
+  Contact contact = Contact::no_slip;
+  double friction = 0.0;             ///< Coulomb coefficient, for Contact::friction
+  std::array<double, 3> velocity{};  ///< [m/s]
+  double spin = 0.0;                 ///< about z, through `pivot` [rad/s]
+  std::array<double, 2> pivot{};     ///< at the start; moves with the surface [m]
+  double starts = 0.0;               ///< moves from this time on [s]
+  double stops = 1e300;              ///< and until this one [s]
+
+  bool moves() const;
+  /// At x and a time: the distance and normal, and the velocity of what is rigid there.
+  Nearest nearest_at(double time, const Position& x) const;
+  std::array<double, 3> velocity_at(double time, const Position& x) const;
+
+ private:
+  double moved_for(double time) const;
+};
+
+}  // namespace repose::mpm
