@@ -189,13 +189,61 @@ void disc_keys(Keys& keys, mpm::Body& body, bool is_disc, bool space) {
     set_disc(body, disc);
 }
 
+/// [[x, y], …], three corners at least.
+void corners_key(Keys& keys, const Key& key, mpm::Polygon& polygon) {
+  const std::string_view name = key.name;
+  if (!key.applies && keys.reader() == nullptr && !keys.describes()) return;
+  if (TomlReader* const table = keys.reader(); table != nullptr && !key.applies) {
+    if (table->has(name)) {
+      table->expect(name);
+      table->report(name, key.only);
+    }
+    return;
+  }
+  KeyInfo info;
+  info.kind = ValueKind::number_list;
+  info.least = 3;
+  keys.value(
+      key,
+      [&](TomlReader& table) {
+        polygon.corners.clear();
+        const toml::array* const list = table.get(name)->as_array();
+        bool sound = list != nullptr && list->size() >= 3;
+        for (std::size_t i = 0; sound && i < list->size(); ++i) {
+          const toml::array* const pair = list->get_as<toml::array>(i);
+          sound = pair != nullptr && pair->size() == 2;
+          std::array<double, 2> corner{};
+          for (std::size_t k = 0; sound && k < 2; ++k) {
+            const auto x = pair->get(k)->value<double>();
+            sound = x.has_value() && pair->get(k)->is_number() && std::isfinite(*x);
+            corner[k] = x.value_or(0.0);
+          }
+          polygon.corners.push_back(corner);
+        }
+        if (!sound) {
+          polygon.corners = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};  // reported
+          table.report(name, fmt::format("{} must be a list of three or more corners, each [x, y] "
+                                         "in metres: [[0, 0], [1, 0], [0, 1]]",
+                                         table.path_of(name)));
+        }
+      },
+      [&] {
+        std::string text = "[";
+        for (const auto& [x, y] : polygon.corners)
+          text += fmt::format("{}[{}, {}]", text.size() > 1 ? ", " : "", toml_number(x),
+                              toml_number(y));
+        return text + "]";
+      },
+      info);
+}
+
 void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
-  static constexpr std::array<std::string_view, 2> in_plane{"box", "disc"},
-      in_space{"box", "cylinder"};
-  static constexpr std::array<std::string_view, 3> all{"box", "disc", "cylinder"};
+  static constexpr std::array<std::string_view, 2> in_space{"box", "cylinder"};
+  static constexpr std::array<std::string_view, 3> in_plane{"box", "disc", "polygon"};
+  static constexpr std::array<std::string_view, 4> all{"box", "disc", "polygon", "cylinder"};
   const bool space = axes == 3;
   keys.text({"name", "-", "for messages"}, body.name);
-  std::size_t shape = body.disc ? 1 : 0;
+  std::size_t shape = body.polygon ? 2 : body.disc ? 1 : 0;
   keys.word({"shape", "-", "of the body"},
             keys.describes() ? std::span<const std::string_view>(all)
             : space          ? std::span<const std::string_view>(in_space)
@@ -210,7 +258,13 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
       Key{"size", "m", "width, height and in space depth of a box", positive, required}.only_if(
           shape == 0, box_only),
       axes, body.size);
-  disc_keys(keys, body, shape != 0, space);
+  disc_keys(keys, body, shape == 1, space);
+  mpm::Polygon polygon = body.polygon.value_or(mpm::Polygon{});
+  corners_key(keys,
+              Key{"corners", "m", "of a polygon, in order: [[x, y], …]", {}, required}.only_if(
+                  shape == 2, "corners belong to a polygon"),
+              polygon);
+  if (keys.reader() != nullptr && shape == 2) set_polygon(body, polygon);
   place_key(keys, {"velocity", "m/s", "at the start"}, axes, body.velocity);
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
   keys.number(
@@ -227,6 +281,99 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
        {},
        required},
       [&](Keys& below) { law_keys(below, body.law); });
+}
+
+constexpr std::array<std::string_view, 2> contact_words{"no_slip", "slip"};
+
+void contact_key(Keys& keys, mpm::Surface& surface) {
+  using Contact = mpm::Surface::Contact;
+  static const KeyInfo info = [] {
+    KeyInfo any, word, friction;
+    any.kind = ValueKind::any_of;
+    word.kind = ValueKind::word;
+    word.words.assign(contact_words.begin(), contact_words.end());
+    friction.kind = ValueKind::table;
+    double x = 0.0;
+    friction.below = describe_keys([&](Keys& below) { friction_key(below, x); });
+    any.below = {word, friction};
+    return any;
+  }();
+  keys.value(
+      {"contact", "-", "of the material with the surface"},
+      [&](TomlReader& table) {
+        const toml::node& node = *table.get("contact");
+        if (node.is_table()) {
+          const TomlReader given = table.table("contact");
+          ReadKeys below(given);
+          surface.contact = Contact::friction;
+          friction_key(below, surface.friction);
+        } else if (!node.is_string() || node.value_or(std::string()) == "friction") {
+          table.report("contact", fmt::format("{} must be \"no_slip\", \"slip\" or a table such as "
+                                              "{{ friction = 0.4 }}; got {}",
+                                              table.path_of("contact"), describe(node)));
+        } else {
+          surface.contact = static_cast<Contact>(
+              table.choice("contact", {contact_words.begin(), contact_words.end()}, 0));
+        }
+      },
+      [&] {
+        return surface.contact == Contact::friction
+                   ? fmt::format("{{ friction = {} }}", toml_number(surface.friction))
+                   : toml_string(contact_words[static_cast<std::size_t>(surface.contact)]);
+      },
+      info);
+}
+
+void surface_keys(Keys& keys, mpm::Surface& surface, std::size_t axes) {
+  static constexpr std::array<std::string_view, 3> shapes{"half_space", "ball", "polygon"};
+  keys.text({"name", "-", "for messages"}, surface.name);
+  std::size_t shape = surface.solid.shape.index();
+  keys.word({"shape", "-",
+             "of the rigid region: all behind a plane (in the plane, a line); a sphere (a disc); a "
+             "polygon, in space a prism along z without end"},
+            shapes, shape);
+  const bool reads = keys.reader() != nullptr;
+  if (reads && shape == 1 && surface.solid.shape.index() != 1) surface.solid.shape = mpm::Ball{};
+  if (reads && shape == 2 && surface.solid.shape.index() != 2) surface.solid.shape = mpm::Polygon{};
+  const auto of = [&]<class Shape>(Shape fallback) {
+    const Shape* const held = std::get_if<Shape>(&surface.solid.shape);
+    return held != nullptr ? *held : fallback;
+  };
+  auto plane = of(mpm::HalfSpace{});
+  auto ball = of(mpm::Ball{});
+  auto polygon = of(mpm::Polygon{});
+  constexpr std::string_view plane_only = "point and normal belong to shape = \"half_space\"",
+                             ball_only = "centre and radius belong to shape = \"ball\"",
+                             polygon_only = "corners belong to shape = \"polygon\"";
+  place_key(keys, Key{"point", "m", "on the plane", {}, required}.only_if(shape == 0, plane_only),
+            axes, plane.point);
+  place_key(
+      keys,
+      Key{"normal", "-", "of the plane, towards the material; of any length", {}, required}.only_if(
+          shape == 0, plane_only),
+      axes, plane.normal);
+  place_key(keys, Key{"centre", "m", "of the ball", {}, required}.only_if(shape == 1, ball_only),
+            axes, ball.centre);
+  keys.number(Key{"radius", "m", "of the ball", positive, required}.only_if(shape == 1, ball_only),
+              ball.radius);
+  corners_key(keys,
+              Key{"corners", "m", "of the polygon, in order: [[x, y], …]", {}, required}.only_if(
+                  shape == 2, polygon_only),
+              polygon);
+  keys.boolean({"hollow", "-", "rigid is what lies outside: a drum"}, surface.solid.hollow);
+  contact_key(keys, surface);
+  place_key(keys, {"velocity", "m/s", "of the surface"}, axes, surface.velocity);
+  keys.number({"spin", "rad/s", "of the surface about z, through its pivot"}, surface.spin);
+  keys.pair({"pivot", "m", "x and y at the start; it moves along"}, surface.pivot);
+  keys.number({"starts", "s", "when it begins to move", not_negative}, surface.starts);
+  keys.number({"stops", "s", "when it comes to rest", not_negative}, surface.stops);
+  if (!reads) return;
+  if (shape == 0)
+    surface.solid.shape = plane;
+  else if (shape == 1)
+    surface.solid.shape = ball;
+  else
+    surface.solid.shape = polygon;
 }
 
 void grid_keys(Keys& keys, mpm::Scene& scene) {
@@ -337,6 +484,16 @@ void scene_keys(Keys& keys, SceneFile& file) {
           scene.bodies.emplace_back().name = fmt::format("body{}", i);
       },
       [&](Keys& below, std::size_t i) { body_keys(below, scene.bodies[i], scene.dimensions()); });
+  keys.tables(
+      {"surface", "-", "a rigid surface, at rest or moving, by which bodies are cut"},
+      scene.surfaces.size(),
+      [&](std::size_t count) {
+        for (std::size_t i = scene.surfaces.size(); i < count; ++i)
+          scene.surfaces.emplace_back().name = fmt::format("surface{}", i);
+      },
+      [&](Keys& below, std::size_t i) {
+        surface_keys(below, scene.surfaces[i], scene.dimensions());
+      });
   keys.table({"grid", "-", "cells and points", {}, required},
              [&](Keys& below) { grid_keys(below, scene); });
   keys.table({"step", "-", "how a step is made"}, [&](Keys& below) { step_keys(below, scene); });

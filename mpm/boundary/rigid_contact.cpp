@@ -91,6 +91,38 @@ Lacks<dim> lacks(const Surface& surface, const Vector<dim>& ghost, const Vector<
 template <int dim>
 const double reach = 2.0 * std::sqrt(static_cast<double>(dim)) + 0.5;
 
+/// Nodes up to this far in front of a surface are bound to it as those behind are [cells]
+constexpr double bound = 0.5;
+
+/// The nodes around the place that lies d in front of the surface over x, and their weights there.
+template <int dim>
+struct Corner {
+  typename GridOf<dim>::Index index;
+  double weight;
+};
+template <int dim>
+using Corners = std::array<Corner<dim>, std::size_t{1} << dim>;
+template <int dim>
+Corners<dim> corners_around(const Vector<dim>& x, const Nearest& at, double d, double h) {
+  typename GridOf<dim>::Index cell;
+  Vector<dim> part;
+  for (std::size_t i = 0; i < dim; ++i) {
+    const double xi = (x[i] + (d - at.distance) * at.normal[i]) / h;
+    cell[i] = static_cast<int>(std::floor(xi));
+    part[i] = xi - cell[i];
+  }
+  Corners<dim> corners;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    corners[k] = {cell, 1.0};
+    for (std::size_t i = 0; i < dim; ++i) {
+      const bool upper = (k >> i & 1U) != 0;
+      corners[k].index[i] += upper ? 1 : 0;
+      corners[k].weight *= upper ? part[i] : 1.0 - part[i];
+    }
+  }
+  return corners;
+}
+
 }  // namespace
 
 template <int dim>
@@ -131,13 +163,20 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
     if (is_new) {
       Vector<dim> x;
       for (std::size_t i = 0; i < dim; ++i) x[i] = h * index[i];
-      if (surface.nearest_at(time, position_of<dim>(x)).distance > 0.0) {
+      if (surface.nearest_at(time, position_of<dim>(x)).distance > bound * h) {
         found->second = static_cast<std::int32_t>(layer.donors.size());
-        layer.donors.push_back(
-            {block, place, along_axes<dim>(surface.velocity_at(time, position_of<dim>(x)))});
+        Donor& made = layer.donors.emplace_back();
+        made.block = block;
+        made.place = place;
+        made.velocity = along_axes<dim>(surface.velocity_at(time, position_of<dim>(x)));
       }
     }
     return found->second;
+  };
+  const auto in_front = [&](const typename GridOf<dim>::Index& index) {
+    Vector<dim> x;
+    for (std::size_t i = 0; i < dim; ++i) x[i] = h * index[i];
+    return surface.nearest_at(time, position_of<dim>(x)).distance > bound * h;
   };
   for (std::size_t b = 0; b < grid.node_blocks.size(); ++b) {
     const NodeBlockOf<dim>& nb = grid.node_blocks[b];
@@ -145,37 +184,33 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
     for (std::size_t axis = 0; axis < dim; ++axis)
       centre[axis] = h * (GridOf<dim>::first(axis, nb.at[axis]) + 0.5 * Shape<dim>::cells[axis]);
     const double middle = surface.nearest_at(time, centre).distance;
-    if (middle > radius || middle < -radius - reach<dim> * h) continue;
+    if (middle > radius + bound * h || middle < -radius - reach<dim> * h) continue;
     for (int n = 0; n < Shape<dim>::nodes; ++n) {
       const typename GridOf<dim>::Index index = node_index<dim>(nb, n);
       Vector<dim> x;
       for (std::size_t i = 0; i < dim; ++i) x[i] = h * index[i];
       const Nearest at = surface.nearest_at(time, position_of<dim>(x));
-      if (at.distance > 0.0 || at.distance < -reach<dim> * h) continue;
-      const double d = std::max(-at.distance, h * std::sqrt(static_cast<double>(dim)));
+      if (at.distance > bound * h || at.distance < -reach<dim> * h) continue;
       Ghost ghost{};
       ghost.block = static_cast<std::int32_t>(b);
       ghost.place = n;
-      ghost.s = -at.distance / d;
       ghost.normal = along_axes<dim>(at.normal);
       ghost.velocity = along_axes<dim>(surface.velocity_at(time, position_of<dim>(x)));
-      typename GridOf<dim>::Index cell;
-      Vector<dim> part;
-      for (std::size_t i = 0; i < dim; ++i) {
-        const double xi = (x[i] + (d - at.distance) * at.normal[i]) / h;
-        cell[i] = static_cast<int>(std::floor(xi));
-        part[i] = xi - cell[i];
+      // d: as far in front as the node lies behind, or so far that all donors are free
+      const double farthest = bound + std::sqrt(static_cast<double>(dim));
+      double d = std::max(-at.distance / h, bound);
+      Corners<dim> corners;
+      for (;; d += 0.125) {
+        corners = corners_around<dim>(x, at, d * h, h);
+        if (d >= farthest || std::all_of(corners.begin(), corners.end(), [&](const auto& corner) {
+              return corner.weight == 0.0 || in_front(corner.index);
+            }))
+          break;
       }
-      for (std::size_t corner = 0; corner < ghost.donor.size(); ++corner) {
-        typename GridOf<dim>::Index there = cell;
-        double weight = 1.0;
-        for (std::size_t i = 0; i < dim; ++i) {
-          const bool upper = (corner >> i & 1U) != 0;
-          there[i] += upper ? 1 : 0;
-          weight *= upper ? part[i] : 1.0 - part[i];
-        }
-        ghost.weight[corner] = weight;
-        ghost.donor[corner] = weight > 0.0 ? donor(there) : -1;
+      ghost.s = -at.distance / (d * h);
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        ghost.weight[k] = corners[k].weight;
+        ghost.donor[k] = corners[k].weight > 0.0 ? donor(corners[k].index) : -1;
       }
       layer.ghosts.push_back(ghost);
     }
@@ -186,116 +221,87 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
 template <int dim>
 WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf<dim>& grid,
                                     double& work) const {
-  const bool gives_impulses = surface.contact == Surface::Contact::friction || surface.moves();
   const auto block = [&](const auto& at) -> NodeBlockOf<dim>& {
     return grid.node_blocks[static_cast<std::size_t>(at.block)];
   };
   const auto mass = [&](const auto& at) {
     return block(at).mass[static_cast<std::size_t>(at.place)];
   };
-  for (Donor& donor : layer.donors) {
-    donor.odd_mass = donor.even_mass = 0.0;
-    donor.u_odd = donor.u_even = donor.v_odd = donor.v_even = {};
-  }
-  const auto each_donor = [&](Ghost& ghost, auto&& f) {
+  const auto velocity = [&](const auto& at) { return read<dim>(block(at).v, at.place); };
+  /// f(donor, weight) for the donors of a ghost that bear mass.
+  const auto each_donor = [&](const Ghost& ghost, auto&& f) {
     for (std::size_t k = 0; k < ghost.donor.size(); ++k) {
       if (ghost.donor[k] < 0) continue;
       Donor& donor = layer.donors[static_cast<std::size_t>(ghost.donor[k])];
-      if (mass(donor) > 0.0) f(donor, ghost.weight[k]);
+      if (donor.mass > 0.0) f(donor, ghost.weight[k] * ghost.per_borne);
     }
-  };
-  for (Ghost& ghost : layer.ghosts) {
-    ghost.acts = false;
-    const double m = mass(ghost);
-    if (!(m > 0.0)) continue;
-    ghost.borne = 0.0;
-    Vector<dim> u{}, v{};
-    each_donor(ghost, [&](const Donor& donor, double w) {
-      ghost.borne += w;
-      add(u, w, read<dim>(block(donor).u, donor.place));
-      add(v, w, read<dim>(block(donor).v, donor.place));
-    });
-    const Vector<dim> u_g = read<dim>(block(ghost).u, ghost.place);
-    const Vector<dim> v_g = read<dim>(block(ghost).v, ghost.place);
-    double s = ghost.s;
-    if (ghost.borne > 1e-9) {
-      for (std::size_t i = 0; i < dim; ++i) u[i] /= ghost.borne, v[i] /= ghost.borne;
-    } else {  // nothing in front of it that it could follow
-      ghost.borne = s = 0.0;
-      u = u_g;
-      v = v_g;
-    }
-    const Lacks<dim> of_v = lacks<dim>(surface, v_g, v, s, ghost.normal, ghost.velocity);
-    if (of_v.parts) continue;
-    ghost.acts = true;
-    ghost.v_odd = of_v.odd;
-    ghost.v_even = of_v.even;
-    ghost.u_odd = ghost.u_even = {};
-    if (!gives_impulses) {
-      const Lacks<dim> of_u = lacks<dim>(surface, u_g, u, s, ghost.normal, ghost.velocity);
-      ghost.u_odd = of_u.odd;
-      ghost.u_even = of_u.even;
-    }
-    if (ghost.borne == 0.0) continue;
-    each_donor(ghost, [&](Donor& donor, double weight) {
-      const double w = weight / ghost.borne;
-      donor.odd_mass += m * w * s * s;
-      donor.even_mass += m * w;
-      add(donor.u_odd, -m * w * s, ghost.u_odd);
-      add(donor.v_odd, -m * w * s, ghost.v_odd);
-      add(donor.u_even, m * w, ghost.u_even);
-      add(donor.v_even, m * w, ghost.v_even);
-    });
-  }
-  WallEffect effect;
-  const auto change = [&](const auto& at, const Vector<dim>& du, const Vector<dim>& dv) {
-    const double m = mass(at);
-    const Vector<dim> u = read<dim>(block(at).u, at.place), v = read<dim>(block(at).v, at.place);
-    Vector<dim> u_new = u, v_new = v, both = u;
-    add(u_new, 1.0, du);
-    add(v_new, 1.0, dv);
-    write<dim>(block(at).u, at.place, u_new);
-    write<dim>(block(at).v, at.place, v_new);
-    effect.kinetic_after += 0.5 * m * (dot(v_new, v_new) - dot(v, v));
-    add(both, 1.0, v_new);
-    if (gives_impulses) {
-      effect.impulses += 0.5 * m * dot(dv, both);
-    } else {
-      effect.kinetic_before += 0.5 * m * (dot(u_new, u_new) - dot(u, u));
-      effect.impulse_work += m * (dot(v, du) - dot(u, du));
-    }
-    work += m * dot(dv, at.velocity);
   };
   for (Donor& donor : layer.donors) {
-    const double m = mass(donor);
-    if (!(m > 0.0)) continue;
-    for (std::size_t i = 0; i < dim; ++i) {
-      donor.u_odd[i] /= m + donor.odd_mass;
-      donor.v_odd[i] /= m + donor.odd_mass;
-      donor.u_even[i] /= m + donor.even_mass;
-      donor.v_even[i] /= m + donor.even_mass;
-    }
-    Vector<dim> du = donor.u_odd, dv = donor.v_odd;
-    add(du, 1.0, donor.u_even);
-    add(dv, 1.0, donor.v_even);
-    change(donor, du, dv);
+    donor.mass = donor.odd_mass = donor.even_mass = mass(donor);
+    donor.odd = donor.even = {};
   }
   for (Ghost& ghost : layer.ghosts) {
+    ghost.mass = mass(ghost);
+    ghost.acts = ghost.mass > 0.0;
     if (!ghost.acts) continue;
-    Vector<dim> du{}, dv{};
-    add(du, -1.0, ghost.u_odd);
-    add(du, -1.0, ghost.u_even);
-    add(dv, -1.0, ghost.v_odd);
-    add(dv, -1.0, ghost.v_even);
-    if (ghost.borne > 0.0)
-      each_donor(ghost, [&](const Donor& donor, double weight) {
-        const double w = weight / ghost.borne;
-        add(du, -ghost.s * w, donor.u_odd);
-        add(dv, -ghost.s * w, donor.v_odd);
-        add(du, w, donor.u_even);
-        add(dv, w, donor.v_even);
-      });
-    change(ghost, du, dv);
+    ghost.per_borne = 1.0;
+    double borne = 0.0;
+    each_donor(ghost, [&](const Donor&, double w) { borne += w; });
+    const Vector<dim> own = velocity(ghost);
+    Vector<dim> front{};
+    if (borne > 1e-9) {
+      ghost.per_borne = 1.0 / borne;
+      each_donor(ghost, [&](const Donor& donor, double w) { add(front, w, velocity(donor)); });
+    } else {  // nothing in front of it that it could follow
+      ghost.per_borne = 0.0;
+      front = own;
+    }
+    const double s = ghost.per_borne > 0.0 ? ghost.s : 0.0;
+    const Lacks<dim> of = lacks<dim>(surface, own, front, s, ghost.normal, ghost.velocity);
+    ghost.acts = !of.parts;
+    if (!ghost.acts) continue;
+    ghost.odd = of.odd;
+    ghost.even = of.even;
+    each_donor(ghost, [&](Donor& donor, double w) {
+      donor.odd_mass += ghost.mass * w * s * s;
+      donor.even_mass += ghost.mass * w;
+      add(donor.odd, -ghost.mass * w * s, ghost.odd);
+      add(donor.even, ghost.mass * w, ghost.even);
+    });
+  }
+  for (Donor& donor : layer.donors) {
+    if (!(donor.mass > 0.0)) continue;
+    for (std::size_t i = 0; i < dim; ++i) {
+      donor.odd[i] /= donor.odd_mass;
+      donor.even[i] /= donor.even_mass;
+    }
+  }
+  WallEffect effect;
+  const auto change = [&](const auto& at, const Vector<dim>& by) {
+    const Vector<dim> v = velocity(at);
+    Vector<dim> v_new = v;
+    add(v_new, 1.0, by);
+    write<dim>(block(at).v, at.place, v_new);
+    effect.kinetic_after += 0.5 * at.mass * (dot(v_new, v_new) - dot(v, v));
+    effect.impulses += 0.5 * at.mass * (dot(by, read<dim>(block(at).u, at.place)) + dot(by, v_new));
+    work += at.mass * dot(by, at.velocity);
+  };
+  for (const Ghost& ghost : layer.ghosts) {
+    if (!ghost.acts) continue;
+    Vector<dim> by{};
+    add(by, -1.0, ghost.odd);
+    add(by, -1.0, ghost.even);
+    each_donor(ghost, [&](const Donor& donor, double w) {
+      add(by, -ghost.s * w, donor.odd);
+      add(by, w, donor.even);
+    });
+    change(ghost, by);
+  }
+  for (const Donor& donor : layer.donors) {
+    if (!(donor.mass > 0.0)) continue;
+    Vector<dim> by = donor.odd;
+    add(by, 1.0, donor.even);
+    change(donor, by);
   }
   return effect;
 }

@@ -2,27 +2,28 @@
 /// \file
 /// Contact with rigid surfaces that lie across the grid at any angle, by their signed distance φ.
 ///
-/// A node behind a surface (φ <= 0) to which points give mass is a ghost: it has no motion of its
-/// own but one that the velocity in front of the surface implies. Let d = max(−φ, √dim h); the
-/// place at φ = d over the ghost lies among 2^dim nodes in front of the surface, the ghost's
-/// donors, with the mean velocity V = Σ w_j v_j. With v relative to the surface's own motion and s
-/// = −φ/d, a field that is linear across the surface obeys
+/// A node behind a surface, or less than half a cell in front of it, is a ghost: it has no motion
+/// of its own but one that the velocity further in front implies. (A node that lies nearly on the
+/// surface would be held by nothing, and the whole flow with it slip by a cell: Bagnold's flow then
+/// ran 7 to 13 % too fast.) The place at φ = d over a ghost lies among 2^dim nodes in front, the
+/// ghost's donors, with the mean velocity V = Σ w_j v_j; d is the least distance >= −φ_g, in
+/// eighths of a cell, at which none of them is a ghost. With v relative to the surface's own motion
+/// and s = −φ_g/d, a field that is linear across the surface obeys
 ///   odd,  v_g = −sV:  it vanishes on the surface (all components: no slip; the normal one: slip),
-///   even, v_g =   V:  its normal derivative does (the tangential ones: slip),
-/// so that the surface stays where it is, between the nodes, to second order in h.
+///   even, v_g =   V:  its normal derivative does (the tangential ones: slip).
 ///
 /// What the ghost lacks, δ = v_g + sV (odd) or v_g − V (even), is taken from the ghost and its
 /// donors as the masses share it, by Gauss' principle of least constraint with lumped masses:
 ///   odd:   Δv_j = −Σ_g m_g w s δ/(m_j + Σ_g m_g w s²),   Δv_g = −δ − sΣ w Δv_j,
 ///   even:  Δv_j =  Σ_g m_g w δ/(m_j + Σ_g m_g w),        Δv_g = −δ +  Σ w Δv_j;
 /// a field that has what it should have is left as it is, and the even one keeps the momentum
-/// exactly. Coulomb friction: δ_n < 0 presses, δ_n >= 0 parts and is let go; the tangential odd
-/// correction is that of φ δ_t, φ = min(1, friction |δ_n|/|δ_t|), hence its impulse friction times
-/// the normal one, and the even one that of the share 1 − φ.
+/// exactly. (With the consistent mass matrix instead, solved to round-off, Bagnold's flow is the
+/// same to 1e-4.) Coulomb friction: δ_n < 0 presses, δ_n >= 0 parts and is let go; the tangential
+/// odd correction is that of φ δ_t, φ = min(1, friction |δ_n|/|δ_t|), hence its impulse friction
+/// times the normal one, and the even one that of the share 1 − φ.
 ///
-/// Without friction and at rest, a surface does the same to velocities before forces (as walls do,
-/// walls.hpp). With it, or in motion, it gives impulses, and leaves those alone: the increment v −
-/// u then carries the impulses to points that keep a velocity of their own.
+/// Surfaces give impulses, as frictional walls do (walls.hpp), and leave the velocities before
+/// forces alone: the increment v − u carries them to points that keep a velocity of their own.
 
 #include <cstdint>
 #include <vector>
@@ -53,19 +54,19 @@ class RigidContact {
   struct Donor {
     std::int32_t block, place;
     std::array<double, dim> velocity;  ///< of the surface
-    // sums over its ghosts: Σ m w s², Σ m w, and the corrections of u and v
-    double odd_mass = 0.0, even_mass = 0.0;
-    std::array<double, dim> u_odd{}, u_even{}, v_odd{}, v_even{};
+    // of the step: m_j, m_j + Σ m_g w s², m_j + Σ m_g w, and the two corrections
+    double mass, odd_mass, even_mass;
+    std::array<double, dim> odd, even;
   };
   struct Ghost {
     std::int32_t block, place;
     double s;
-    std::array<double, dim> normal, velocity;               ///< of the surface
+    std::array<double, dim> normal, velocity;               ///< velocity of the surface
     std::array<std::int32_t, std::size_t{1} << dim> donor;  ///< into donors; −1: none
     std::array<double, std::size_t{1} << dim> weight;
-    // of the step: what is lacking in u and v, and the weights' sum over donors that bear mass
-    std::array<double, dim> u_odd, u_even, v_odd, v_even;
-    double borne;
+    // of the step: what is lacking, and 1/Σ weight over donors that bear mass
+    double mass, per_borne;
+    std::array<double, dim> odd, even;
     bool acts;
   };
   struct Layer {  ///< of one surface

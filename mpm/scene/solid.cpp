@@ -26,10 +26,12 @@ Nearest nearest_of(const Ball& ball, const Position& x) {
 }
 
 /// Distance to the nearest edge; inside where a ray to the right meets an odd number of edges.
+/// Along an edge the normal is the edge's own, which a place on it could not tell from its
+/// distance.
 Nearest nearest_of(const Polygon& polygon, const Position& x) {
   double nearest2 = HUGE_VAL, turn = 0.0;
-  std::array<double, 2> away{}, normal{};
-  bool inside = false;
+  std::array<double, 2> away{}, outward{};
+  bool inside = false, at_corner = false;
   const auto& corners = polygon.corners;
   for (std::size_t i = 0, j = corners.size() - 1; i < corners.size(); j = i++) {
     const std::array<double, 2> e{corners[i][0] - corners[j][0], corners[i][1] - corners[j][1]};
@@ -38,23 +40,26 @@ Nearest nearest_of(const Polygon& polygon, const Position& x) {
     if ((corners[i][1] > x[1]) != (corners[j][1] > x[1]) &&
         x[0] < corners[j][0] + e[0] * (x[1] - corners[j][1]) / e[1])
       inside = !inside;
-    const double length2 = e[0] * e[0] + e[1] * e[1];
+    const double length2 = e[0] * e[0] + e[1] * e[1], length = std::sqrt(length2);
     const double along = std::clamp((r[0] * e[0] + r[1] * e[1]) / length2, 0.0, 1.0);
+    const std::array<double, 2> n{e[1] / length, -e[0] / length};
+    const bool of_corner = along == 0.0 || along == 1.0;
     const std::array<double, 2> d{r[0] - along * e[0], r[1] - along * e[1]};
-    const double d2 = d[0] * d[0] + d[1] * d[1];
+    const double across = r[0] * n[0] + r[1] * n[1];
+    const double d2 = of_corner ? d[0] * d[0] + d[1] * d[1] : across * across;
     if (d2 >= nearest2) continue;
     nearest2 = d2;
+    at_corner = of_corner;
     away = d;
-    normal = {e[1] / std::sqrt(length2), -e[0] / std::sqrt(length2)};
+    outward = n;
   }
-  if (turn < 0.0) normal = {-normal[0], -normal[1]};
-  const double distance = std::sqrt(nearest2);
-  // on the edge itself only the edge knows its normal
-  if (distance > 0.0) {
-    const double sign = inside ? -1.0 : 1.0;
-    normal = {sign * away[0] / distance, sign * away[1] / distance};
+  const double distance = std::sqrt(nearest2), sign = turn < 0.0 ? -1.0 : 1.0;
+  const double size = std::max(std::abs(x[0]), std::abs(x[1]));
+  if (at_corner && distance > 1e-9 * size) {
+    const double towards = inside ? -1.0 / distance : 1.0 / distance;
+    return {inside ? -distance : distance, {towards * away[0], towards * away[1], 0.0}};
   }
-  return {inside ? -distance : distance, {normal[0], normal[1], 0.0}};
+  return {inside ? -distance : distance, {sign * outward[0], sign * outward[1], 0.0}};
 }
 
 }  // namespace
@@ -103,6 +108,38 @@ Polygon clipped(const Polygon& polygon, const std::array<double, 2>& low,
       rest = std::move(kept);
     }
   return rest;
+}
+
+bool overlap(const Polygon& a, const Polygon& b, double slack) {
+  // an edge of one passes through one of the other, or one holds a corner or the middle of an edge
+  // of the other
+  using Point = std::array<double, 2>;
+  const auto each_edge = [](const Polygon& polygon, auto&& f) {
+    for (std::size_t i = 0, j = polygon.corners.size() - 1; i < polygon.corners.size(); j = i++)
+      if (f(polygon.corners[j], polygon.corners[i])) return true;
+    return false;
+  };
+  /// Distance of x from the line through p and q, positive on its left.
+  const auto left = [](const Point& p, const Point& q, const Point& x) {
+    return ((q[0] - p[0]) * (x[1] - p[1]) - (q[1] - p[1]) * (x[0] - p[0])) /
+           std::hypot(q[0] - p[0], q[1] - p[1]);
+  };
+  const auto apart = [&](double x, double y) {
+    return (x > slack && y < -slack) || (x < -slack && y > slack);
+  };
+  const auto holds = [&](const Polygon& outer, const Polygon& inner) {
+    const auto deep = [&](double x, double y) {
+      return nearest_of(outer, {x, y, 0.0}).distance < -slack;
+    };
+    return each_edge(inner, [&](const Point& p, const Point& q) {
+      return deep(p[0], p[1]) || deep(0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]));
+    });
+  };
+  return holds(a, b) || holds(b, a) || each_edge(a, [&](const Point& p, const Point& q) {
+           return each_edge(b, [&](const Point& r, const Point& s) {
+             return apart(left(p, q, r), left(p, q, s)) && apart(left(r, s, p), left(r, s, q));
+           });
+         });
 }
 
 Nearest nearest(const Solid& solid, const Position& x) {

@@ -39,6 +39,9 @@ Piece piece_of(const Polygon& polygon);
 Polygon clipped(const Polygon& polygon, const std::array<double, 2>& low,
                 const std::array<double, 2>& high);
 
+/// Whether two polygons have more in common than their edges, deeper than `slack` [m].
+bool overlap(const Polygon& a, const Polygon& b, double slack);
+
 struct Solid {
   std::variant<HalfSpace, Ball, Polygon> shape;
   bool hollow = false;  ///< rigid is what lies outside

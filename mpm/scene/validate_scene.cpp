@@ -273,6 +273,13 @@ void check_discs(const Scene& scene) {
   }
 }
 
+Polygon outline(const Body& body) {
+  if (body.polygon) return *body.polygon;
+  const auto& o = body.origin;
+  const double right = o[0] + body.size[0], top = o[1] + body.size[1];
+  return {{{o[0], o[1]}, {right, o[1]}, {right, top}, {o[0], top}}};
+}
+
 void check_overlap(const Scene& scene) {
   const auto name = [&](std::size_t i) {
     const std::string& given = scene.bodies[i].name;
@@ -290,11 +297,76 @@ void check_overlap(const Scene& scene) {
       if (to[0] - from[0] <= slack || to[1] - from[1] <= slack ||
           (scene.dimensions() == 3 && to[2] - from[2] <= slack))
         continue;
+      if ((a.polygon || b.polygon) && !overlap(outline(a), outline(b), slack)) continue;
       throw InputError(path_of(i, "origin"), name(i) + " overlaps " + name(j) + " in x = [" +
                                                  number(from[0]) + ", " + number(to[0]) +
                                                  "] m, y = [" + number(from[1]) + ", " +
                                                  number(to[1]) + "] m");
     }
+}
+
+/// Whether two edges of a polygon that are no neighbours meet.
+bool crosses_itself(const Polygon& polygon) {
+  const auto& c = polygon.corners;
+  const std::size_t n = c.size();
+  const auto left = [&](std::size_t p, std::size_t q, std::size_t x) {
+    return (c[q][0] - c[p][0]) * (c[x][1] - c[p][1]) - (c[q][1] - c[p][1]) * (c[x][0] - c[p][0]);
+  };
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (i == 0 && j == n - 1) continue;
+      const std::size_t a = (i + 1) % n, b = (j + 1) % n;
+      if (left(i, a, j) * left(i, a, b) < 0.0 && left(j, b, i) * left(j, b, a) < 0.0) return true;
+    }
+  return false;
+}
+
+void check_polygon(const Polygon& polygon, const std::string& key) {
+  if (polygon.corners.size() < 3) throw InputError(key, "a polygon has three corners at least");
+  for (std::size_t i = 0, j = polygon.corners.size() - 1; i < polygon.corners.size(); j = i++)
+    if (polygon.corners[i] == polygon.corners[j])
+      throw InputError(key, "two neighbouring corners are the same: [" +
+                                number(polygon.corners[i][0]) + ", " +
+                                number(polygon.corners[i][1]) + "]");
+  if (crosses_itself(polygon)) throw InputError(key, "the polygon crosses itself");
+  if (!(piece_of(polygon).area > 0.0)) throw InputError(key, "the polygon has no area");
+}
+
+void check_surfaces(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
+    const Surface& surface = scene.surfaces[i];
+    const std::string path = "surface[" + std::to_string(i) + "].";
+    if (const auto* const plane = std::get_if<HalfSpace>(&surface.solid.shape))
+      if (const auto& n = plane->normal; !(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0.0))
+        throw InputError(path + "normal", "a normal of length 0 has no direction");
+    if (const auto* const polygon = std::get_if<Polygon>(&surface.solid.shape))
+      check_polygon(*polygon, path + "corners");
+    if (surface.stops < surface.starts)
+      throw InputError(path + "stops", "it would come to rest at " + number(surface.stops) +
+                                           " s, before it begins to move at " +
+                                           number(surface.starts) + " s");
+  }
+  if (scene.surfaces.empty()) return;
+  if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer", "rigid surfaces do not go with transfer = \"" +
+                                          std::string(name_of(scene.transfer)) +
+                                          "\" yet; any other transfer does");
+  if (scene.viscosity == Viscosity::implicit_solve)
+    throw InputError("step.viscosity",
+                     "rigid surfaces do not go with viscosity = \"implicit\" yet");
+  if (scene.left.kind == Wall::Kind::periodic)
+    throw InputError("domain.left", "rigid surfaces do not go with periodic edges yet");
+}
+
+void check_polygons(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (!body.polygon) continue;
+    check_polygon(*body.polygon, path_of(i, "corners"));
+    if (body.lithostatic)
+      throw InputError(path_of(i, "initial.lithostatic"),
+                       "only a box can be lithostatic: a polygon has no level surface");
+  }
 }
 
 /// What an extended velocity adds vanishes at walls at rest and knows no images across an edge.
@@ -417,6 +489,8 @@ void validate(const Scene& scene) {
   check_periodic(scene);
   check_geometry(scene);
   check_discs(scene);
+  check_polygons(scene);
+  check_surfaces(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
   check_space(scene);
