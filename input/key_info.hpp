@@ -18,6 +18,7 @@ enum class ValueKind : std::uint8_t {
   text,
   word,         ///< one of KeyInfo::words
   number_list,  ///< of KeyInfo::least to KeyInfo::most numbers
+  corner_list,  ///< [[x, y], …], of KeyInfo::least at least
   word_list,
   text_list,  ///< or one text
   table,

@@ -201,7 +201,7 @@ void corners_key(Keys& keys, const Key& key, mpm::Polygon& polygon) {
     return;
   }
   KeyInfo info;
-  info.kind = ValueKind::number_list;
+  info.kind = ValueKind::corner_list;
   info.least = 3;
   keys.value(
       key,
@@ -264,7 +264,9 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
               Key{"corners", "m", "of a polygon, in order: [[x, y], …]", {}, required}.only_if(
                   shape == 2, "corners belong to a polygon"),
               polygon);
-  if (keys.reader() != nullptr && shape == 2) set_polygon(body, polygon);
+  // without its corners, which is reported, it has no box to be set
+  if (keys.reader() != nullptr && shape == 2 && polygon.corners.size() > 2)
+    set_polygon(body, polygon);
   place_key(keys, {"velocity", "m/s", "at the start"}, axes, body.velocity);
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
   keys.number(
@@ -366,7 +368,10 @@ void surface_keys(Keys& keys, mpm::Surface& surface, std::size_t axes) {
   keys.number({"spin", "rad/s", "of the surface about z, through its pivot"}, surface.spin);
   keys.pair({"pivot", "m", "x and y at the start; it moves along"}, surface.pivot);
   keys.number({"starts", "s", "when it begins to move", not_negative}, surface.starts);
-  keys.number({"stops", "s", "when it comes to rest", not_negative}, surface.stops);
+  std::optional<double> stops;
+  if (surface.stops < HUGE_VAL) stops = surface.stops;
+  keys.number({"stops", "s", "when it comes to rest; without it, never", not_negative}, stops);
+  surface.stops = stops.value_or(HUGE_VAL);
   if (!reads) return;
   if (shape == 0)
     surface.solid.shape = plane;

@@ -147,6 +147,9 @@ Json value_schema(const KeyInfo& key) {
       return {{"enum", key.words}};
     case ValueKind::number_list:
       return list_schema(key, number);
+    case ValueKind::corner_list:
+      return list_schema(
+          key, Json{{"type", "array"}, {"items", number}, {"minItems", 2}, {"maxItems", 2}});
     case ValueKind::word_list:
       return list_schema(key, {{"enum", key.words}});
     case ValueKind::text_list:
@@ -199,6 +202,8 @@ std::string allowed(const KeyInfo& key) {
                                     : fmt::format("{} or {} numbers", key.least, key.most);
       return bounded ? fmt::format("{}, each {}", count, range) : count;
     }
+    case ValueKind::corner_list:
+      return fmt::format("`[[x, y], …]`, {} or more", key.least);
     case ValueKind::word_list:
       return "a list of " + quoted(key.words);
     case ValueKind::text_list:

@@ -181,6 +181,7 @@ Simulation::Counters Simulation::Impl<dim>::counters() const {
     bytes += static_cast<double>(points.slots() * points.bytes_per_slot());
   return {.dt_min_s = s.steps > 0 ? s.dt_min : 0.0,
           .dt_max_s = s.dt_max,
+          .surface_work = s.ledger.surface_work,
           .wall_corrections = s.wall_corrections,
           .sorts = s.sorts,
           .points_held = s.points_held,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace repose::mpm {
 namespace {
@@ -175,6 +176,45 @@ std::array<double, 3> Surface::velocity_at(double time, const Position& x) const
   const double t = moved_for(time);
   return {velocity[0] - spin * (x[1] - pivot[1] - velocity[1] * t),
           velocity[1] + spin * (x[0] - pivot[0] - velocity[0] * t), velocity[2]};
+}
+
+Polygon Surface::outline(double time, double z, const std::array<double, 2>& low,
+                         const std::array<double, 2>& high) const {
+  Polygon shape;
+  if (const auto* const polygon = std::get_if<Polygon>(&solid.shape)) {
+    shape = *polygon;
+  } else if (const auto* const ball = std::get_if<Ball>(&solid.shape)) {
+    const double dz = z - ball->centre[2], r2 = ball->radius * ball->radius - dz * dz;
+    constexpr int corners = 180;
+    for (int k = 0; k < corners && r2 > 0.0; ++k) {
+      const double a = 2.0 * std::numbers::pi * k / corners;
+      shape.corners.push_back({ball->centre[0] + std::sqrt(r2) * std::cos(a),
+                               ball->centre[1] + std::sqrt(r2) * std::sin(a)});
+    }
+  } else {
+    // a rectangle on the line's rigid side, larger than what is looked at
+    const auto& plane = std::get<HalfSpace>(solid.shape);
+    const double in_plane = std::hypot(plane.normal[0], plane.normal[1]);
+    if (in_plane == 0.0) return shape;
+    const std::array<double, 2> n{plane.normal[0] / in_plane, plane.normal[1] / in_plane};
+    const double shift = -plane.normal[2] / in_plane * (z - plane.point[2]);
+    const std::array<double, 2> on{plane.point[0] + shift * n[0], plane.point[1] + shift * n[1]};
+    double size = 0.0;
+    for (std::size_t k = 0; k < 2; ++k)
+      size += 2.0 * (high[k] - low[k]) + std::abs(on[k] - low[k]) +
+              std::abs(velocity[k]) * moved_for(time);
+    for (const auto& [along, across] :
+         {std::pair{-size, 0.0}, {-size, -size}, {size, -size}, {size, 0.0}})
+      shape.corners.push_back(
+          {on[0] + along * n[1] + across * n[0], on[1] - along * n[0] + across * n[1]});
+  }
+  const double t = moves() ? moved_for(time) : 0.0, c = std::cos(spin * t), s = std::sin(spin * t);
+  for (auto& [x, y] : shape.corners) {
+    const double dx = x - pivot[0], dy = y - pivot[1];
+    x = pivot[0] + velocity[0] * t + c * dx - s * dy;
+    y = pivot[1] + velocity[1] * t + s * dx + c * dy;
+  }
+  return clipped(shape, low, high);
 }
 
 }  // namespace repose::mpm

@@ -3,6 +3,7 @@
 /// Rigid regions by their signed distance, and surfaces made of them.
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <variant>
 #include <vector>
@@ -70,12 +71,16 @@ struct Surface {
   double spin = 0.0;                 ///< about z, through `pivot` [rad/s]
   std::array<double, 2> pivot{};     ///< at the start; moves with the surface [m]
   double starts = 0.0;               ///< moves from this time on [s]
-  double stops = 1e300;              ///< and until this one [s]
+  double stops = HUGE_VAL;           ///< and until this one [s]
 
   bool moves() const;
   /// At x and a time: the distance and normal, and the velocity of what is rigid there.
   Nearest nearest_at(double time, const Position& x) const;
   std::array<double, 3> velocity_at(double time, const Position& x) const;
+  /// Its outline in the plane z at a time, closed, within the rectangle from `low` to `high`; empty
+  /// where there is none of it. A hollow one has the outline of its hole.
+  Polygon outline(double time, double z, const std::array<double, 2>& low,
+                  const std::array<double, 2>& high) const;
 
  private:
   double moved_for(double time) const;

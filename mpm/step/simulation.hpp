@@ -152,6 +152,7 @@ class Simulation {
   /// Figures for summary.json beyond the last row of the series.
   struct Counters {
     double dt_min_s, dt_max_s;
+    double surface_work;  ///< of moving rigid surfaces on the material [J/m], in space [J]
     std::int64_t wall_corrections;  ///< points put back on a wall after crossing it by round-off
     std::int64_t sorts;
     /// Points whose density the floor held up: in the last step, the most in any step, summed over

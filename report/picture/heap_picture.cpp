@@ -76,6 +76,20 @@ void draw_box(Axes& axes, const HeapPicture& picture, double wall) {
   axes.line("", std::array{0.0, 0.0, w, w}, std::array{h, 0.0, 0.0, h}, inner);
 }
 
+void draw_surfaces(Axes& axes, const HeapPicture& picture) {
+  Style style;
+  style.colour = Colour::black;
+  style.width_px = 1.6;
+  for (const mpm::Polygon& outline : picture.surfaces) {
+    std::vector<double> x, y;
+    for (std::size_t k = 0; k <= outline.corners.size(); ++k) {
+      x.push_back(outline.corners[k % outline.corners.size()][0]);
+      y.push_back(outline.corners[k % outline.corners.size()][1]);
+    }
+    axes.line("", x, y, style);
+  }
+}
+
 void draw_gravity(Axes& axes, const HeapPicture& picture) {
   const double angle = *picture.tilt_deg * std::numbers::pi / 180.0;
   const double metres_per_px =
@@ -108,6 +122,7 @@ void write_heap_picture(const std::filesystem::path& path, const HeapPicture& pi
   style.diameter = 1.7 * picture.point_spacing_m;  // closes the gaps of an uneven arrangement
   axes.scatter(picture.x_m, picture.y_m, picture.value, colours, style);
   draw_box(axes, picture, wall);
+  draw_surfaces(axes, picture);
   if (picture.tilt_deg) draw_gravity(axes, picture);
   figure.render_svg(path);
 }
@@ -116,11 +131,13 @@ bool draw_final_picture(const input::SceneFile& file, const mpm::Simulation& sim
                         const std::filesystem::path& path) {
   const mpm::Scene& scene = file.scene;
   mpm::Simulation::Snapshot shot = simulation.snapshot(file.stress);
+  double plane = 0.0;
   std::string title = fmt::format("{} at {:.4g} s", scene.name, simulation.time());
   if (scene.dimensions() == 3) {
     // the cells along z = 0, or the middle of the box where that is no plane of symmetry
     const double z = scene.near.kind == mpm::Wall::Kind::slip ? 0.0 : 0.5 * scene.domain[2];
     shot = shot.slice(z, z + scene.h);
+    plane = z + 0.5 * scene.h;
     title += fmt::format(", z = {:.4g} to {:.4g} m", z, z + scene.h);
     if (shot.x_m.empty()) return false;
   }
@@ -138,6 +155,11 @@ bool draw_final_picture(const input::SceneFile& file, const mpm::Simulation& sim
   picture.value_label = mises ? "von Mises stress (kPa)" : "density (kg/m³)";
   picture.point_spacing_m = mpm::point_spacing(scene);
   if (scene.gravity > 0.0) picture.tilt_deg = scene.tilt_deg;
+  for (const mpm::Surface& surface : scene.surfaces) {
+    mpm::Polygon outline =
+        surface.outline(simulation.time(), plane, {0.0, 0.0}, {scene.domain[0], scene.domain[1]});
+    if (outline.corners.size() > 2) picture.surfaces.push_back(std::move(outline));
+  }
   write_heap_picture(path, picture);
   return true;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "input/read_scene.hpp"
 #include "mpm/step/simulation.hpp"
@@ -21,6 +22,7 @@ struct HeapPicture {
   double point_spacing_m = 0.0;  // between neighbours at the start: h / sqrt(points per cell)
   /// Gravity is turned by this angle towards +x; drawn as an arrow. Absent: none is drawn.
   std::optional<double> tilt_deg{};
+  std::vector<mpm::Polygon> surfaces;  // outlines of what is rigid
 };
 
 /// Draws the points coloured by value in their box, to scale, as SVG. If a few extreme values would

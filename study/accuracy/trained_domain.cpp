@@ -137,6 +137,8 @@ std::vector<std::string> beyond_training(const mpm::Scene& scene) {
   }
   const mpm::Body& body = scene.bodies.front();
   if (body.disc) reasons.emplace_back("a round body");
+  if (body.polygon) reasons.emplace_back("a body cut to a polygon");
+  if (!scene.surfaces.empty()) reasons.emplace_back("rigid surfaces");
   if (body.origin[0] > 0.0 || body.origin[1] > 0.0)
     reasons.emplace_back("a body away from the left wall or the floor");
   if (body.velocity != std::array<double, 3>{} || body.spin != 0.0)

@@ -224,6 +224,7 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   put("density_floor_J_per_m", last.density_floor_J_per_m);
   put("transfer_loss_J_per_m", last.transfer_loss_J_per_m);
   put("wall_loss_J_per_m", last.wall_loss_J_per_m);
+  if (!simulation.scene().surfaces.empty()) put("surface_work_J_per_m", counters.surface_work);
   put("energy_residual_J_per_m", last.energy_residual_J_per_m);
   put("work_residual_J_per_m", last.work_residual_J_per_m);
   s["energy_error"] = record.energy_error(last);

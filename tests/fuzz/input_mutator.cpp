@@ -187,6 +187,17 @@ std::string value_text(const KeyInfo& key, Random& random, int depth) {
           one_in(12, random) ? below(9, random) : least + below(most - least + 1, random);
       return list_text(key, length, random, depth);
     }
+    case ValueKind::corner_list: {
+      std::string text = "[";
+      for (std::size_t k = 0, n = below(7, random); k < n; ++k) {
+        text += k > 0 ? ", [" : "[";
+        for (std::size_t i = 0, m = one_in(12, random) ? below(4, random) : 2; i < m; ++i)
+          text += (i > 0 ? ", " : "") +
+                  (one_in(12, random) ? wild_number(random) : tame_number(key, random));
+        text += "]";
+      }
+      return text + "]";
+    }
     case ValueKind::table:
       return table_text(key.below, random, depth, key.open);
     case ValueKind::any_of:

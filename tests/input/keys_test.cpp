@@ -98,7 +98,15 @@ std::vector<std::string> scenes() {
             "[body.law]\nname = \"newtonian\"\neta = 5.0\nK = 26e3\nalpha = 7.0\nrho_0 = "
             "1300.0\n",
             "[grid]\nh = 0.025\n[step]\nviscosity = \"implicit\"\nviscosity_tolerance = 1e-4\n"),
-      cylinder + std::string(law) + "[grid]\nh = 0.05\n"};
+      cylinder + std::string(law) + "[grid]\nh = 0.05\n",
+      plane("shape = \"polygon\"\ncorners = [[0.1, 0.2], [0.3, 0.2], [0.2, 0.4]]\n", law,
+            grid +
+                "[[surface]]\nname = \"ramp\"\nshape = \"half_space\"\npoint = [0.1, 0.1]\n"
+                "normal = [-0.2, 1.0]\ncontact = { friction = 0.3 }\n"
+                "[[surface]]\nshape = \"ball\"\ncentre = [0.5, 0.2]\nradius = 0.4\nhollow = true\n"
+                "spin = 1.0\npivot = [0.5, 0.2]\ncontact = \"slip\"\n"
+                "[[surface]]\nshape = \"polygon\"\ncorners = [[0.6, 0.0], [0.7, 0.0], [0.7, 0.3]]\n"
+                "velocity = [0.1, 0.2]\nstarts = 0.1\nstops = 0.2\n")};
 }
 
 /// Keys of a kind as paths without positions: "body.initial.p", with what is known of each.
@@ -229,10 +237,10 @@ TEST(KeyTable, AChangedSceneKeyChangesWhatIsWrittenOut) {
   const auto infos = known(keys);
   // whose other words need other keys, or whose other numbers leave the lattice of points
   const std::set<std::string> elsewhere{
-      "body.shape",    "step.transfer", "step.viscosity",
-      "grid.h",        "body.radius",   "body.hole",
-      "body.base",     "body.height",   "body.initial.lithostatic",
-      "body.initial.e"};
+      "body.shape",     "step.transfer", "step.viscosity",
+      "grid.h",         "body.radius",   "body.hole",
+      "body.base",      "body.height",   "body.initial.lithostatic",
+      "body.initial.e", "surface.shape"};
   std::set<std::string> changed;
   for (const std::string& text : scenes()) {
     const std::string before = resolved(text);
