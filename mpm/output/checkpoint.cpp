@@ -238,6 +238,7 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
     if (wholes[2] != static_cast<std::int64_t>(pack_size))
       reject("it was saved by a build for another width of vectors");
     s.tiles_are_current = false;
+    s.contact_sorts_ = -1;
     std::size_t next_real = 0;
     std::size_t next_whole = 3;
     s.must_sort = wholes[1] != 0;

@@ -1,5 +1,7 @@
 /// Bodies on rigid surfaces that lie across the grid.
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "tests/mpm/saved_state.hpp"
@@ -230,6 +232,106 @@ TEST(RigidSurfaceTest, BagnoldFlowOnATurnedPlane) {
         angle, offset, 100.0 * largest / straight[7], of_exact, along_grid);
     EXPECT_LT(largest, 0.02 * straight[7]) << angle << " " << offset;
   }
+}
+
+// In space, a plane between the nodes and the edge of the box rub alike.
+TEST(RigidSurfaceTest, InSpace) {
+  for (const bool edge : {false, true}) {
+    Scene scene = empty_box(3.0, 0.6, 0.05);
+    scene.domain[2] = 0.6;
+    scene.near = scene.far = {Wall::Kind::slip};
+    scene.points_per_cell = 8;
+    scene.transfer = Transfer::relaxed;
+    scene.gravity = g;
+    scene.tilt_deg = 45.0;
+    const double base = edge ? 0.0 : 0.13;
+    scene.bodies = {block(0.2, base, 0.4, 0.2, unyielding())};
+    scene.bodies[0].origin[2] = 0.1;
+    scene.bodies[0].size[2] = 0.4;
+    if (edge) {
+      scene.floor = {Wall::Kind::friction, 0.5};
+    } else {
+      Surface plane;
+      plane.solid.shape = HalfSpace{{0.0, base, 0.0}, {0.0, 2.0, 0.0}};
+      plane.contact = Surface::Contact::friction;
+      plane.friction = 0.5;
+      scene.surfaces = {plane};
+    }
+    Simulation simulation(scene, 1);
+    run_until(simulation, 1.0);
+    const SeriesRow row = simulation.diagnostics();
+    const double speed = row.momentum_x / row.mass_kg_per_m, exact = g * std::sqrt(0.5) * 0.5;
+    std::printf("[ measured ] in space, %s: %.4f m/s, exact %.4f\n", edge ? "edge" : "surface",
+                speed, exact);
+    // free until it has landed, 4H/c = 29 ms, with half the acceleration missing on average
+    EXPECT_NEAR(speed, exact, 0.5 * 0.029 * exact);
+  }
+}
+
+// The signed distance of every shape has the slope 1 along its normal, where it stands and where it
+// has moved to; 1e-6 is the step of the difference.
+TEST(SolidTest, TheNormalIsTheSlopeOfTheDistance) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> place(-1.0, 1.0);
+  Surface surface;
+  surface.velocity = {0.3, -0.2, 0.0};
+  surface.spin = 1.1;
+  surface.pivot = {0.2, 0.1};
+  const Polygon arrow{{{-0.5, -0.4}, {0.6, -0.3}, {0.1, 0.0}, {0.5, 0.5}, {-0.4, 0.2}}};
+  for (const auto& shape :
+       {decltype(Solid::shape){HalfSpace{{0.1, 0.2, 0.3}, {0.4, -2.0, 0.0}}},
+        decltype(Solid::shape){Ball{{0.1, 0.0, 0.0}, 0.5}}, decltype(Solid::shape){arrow}})
+    for (const bool hollow : {false, true})
+      for (const double time : {0.0, 0.7}) {
+        surface.solid = {shape, hollow};
+        for (int k = 0; k < 2000; ++k) {
+          const Position x{place(random), place(random), 0.0};
+          const Nearest at = surface.nearest_at(time, x);
+          EXPECT_NEAR(std::hypot(at.normal[0], at.normal[1]), 1.0, 1e-14);
+          constexpr double step = 1e-6;
+          const auto distance_at = [&](double along) {
+            return surface
+                .nearest_at(time, {x[0] + along * at.normal[0], x[1] + along * at.normal[1], 0.0})
+                .distance;
+          };
+          // on one side at least: on the other another edge may be nearer
+          const double ahead = (distance_at(step) - at.distance) / step;
+          const double behind = (at.distance - distance_at(-step)) / step;
+          EXPECT_LT(std::min(std::abs(ahead - 1.0), std::abs(behind - 1.0)), 1e-8);
+          // the way back to the surface ends on it
+          EXPECT_NEAR(distance_at(-at.distance), 0.0, 1e-14);
+        }
+      }
+}
+
+// A place on an edge has the edge's normal, to the last digit of its distance.
+TEST(SolidTest, OnAnEdgeTheNormalIsTheEdges) {
+  const Solid gate{Polygon{{{0.2, -5.0}, {0.23, -5.0}, {0.23, 5.0}, {0.2, 5.0}}}, false};
+  for (int k = -300; k < 300; ++k)
+    for (const double off : {0.0, 1e-17, -3e-17, 1e-12}) {
+      const Nearest at = nearest(gate, {0.2 + off, 0.0125 * k, 0.0});
+      EXPECT_NEAR(at.normal[0], -1.0, 1e-14);
+      EXPECT_NEAR(at.distance, -off, 1e-16);
+    }
+}
+
+// Cells of any lattice cut a polygon into pieces of its area and its centre of mass.
+TEST(SolidTest, PiecesAddUpToThePolygon) {
+  const Polygon arrow{{{-0.5, -0.4}, {0.6, -0.3}, {0.1, 0.0}, {0.5, 0.5}, {-0.4, 0.2}}};
+  const Piece whole = piece_of(arrow);
+  for (const double cell : {0.07, 0.013}) {
+    double area = 0.0, x = 0.0;
+    for (double left = -0.6; left < 0.7; left += cell)
+      for (double low = -0.6; low < 0.7; low += cell) {
+        const Piece piece = piece_of(clipped(arrow, {left, low}, {left + cell, low + cell}));
+        area += piece.area;
+        x += piece.area * piece.centroid[0];
+      }
+    EXPECT_NEAR(area, whole.area, 1e-12 * whole.area);
+    EXPECT_NEAR(x / area, whole.centroid[0], 1e-12);
+  }
+  EXPECT_TRUE(overlap(arrow, {{{-0.1, -0.1}, {0.0, -0.1}, {0.0, 0.0}}}, 1e-9));
+  EXPECT_FALSE(overlap(arrow, {{{0.3, 0.0}, {0.5, 0.0}, {0.5, 0.05}}}, 1e-9)) << "in its notch";
 }
 
 // A piston under a block: a surface that rises at a speed from a time on carries the block with it,
