@@ -33,8 +33,8 @@ class Frames(Sequence):
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        series = sorted(folder.glob("*.hdf.series")) if folder.is_dir() else []
-        self._entries = _core.read_frame_series(os.fspath(series[0])) if series else []
+        series = _core.point_series_in(os.fspath(folder))
+        self._entries = _core.read_frame_series(series) if series else []
 
     @property
     def times(self) -> np.ndarray:
