@@ -455,6 +455,10 @@ void step_keys(Keys& keys, mpm::Scene& scene) {
 void output_keys(Keys& keys, SceneFile& file) {
   keys.number({"frame_interval", "s", "time between frames, 0 for none", not_negative},
               file.scene.frame_interval);
+  keys.boolean(Key{"grid_frames", "-", "frames of the grid as well, its mass and velocity"}.only_if(
+                   file.scene.frame_interval > 0.0 || keys.describes(),
+                   "only a run with frames (output.frame_interval) has frames of its grid"),
+               file.scene.grid_frames);
   keys.number({"series_interval", "s", "time between rows of series.csv, 0 for two rows only",
                not_negative},
               file.scene.series_interval);

@@ -26,6 +26,12 @@ struct Frame {
   std::vector<Field> fields;       ///< by name
 };
 
+/// The base name of the series of a run's grid, beside that of its points, of the given one.
+std::string grid_series_name(const std::string& base_name);
+
+/// The BASE.hdf.series of a folder that is of points; empty if there is none.
+std::filesystem::path point_series_in(const std::filesystem::path& folder);
+
 /// The frames that a BASE.hdf.series names, in its order. Errors: IoError if the file cannot be
 /// read, is no series of frames or names a file of another folder.
 std::vector<FrameEntry> read_frame_series(const std::filesystem::path& series);

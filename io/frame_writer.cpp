@@ -70,7 +70,12 @@ FrameWriter FrameWriter::continued(fs::path folder, std::string base_name, doubl
 
 fs::path FrameWriter::series_path() const { return folder_ / (base_name_ + ".hdf.series"); }
 
-fs::path FrameWriter::write(const FrameView& frame) {
+fs::path FrameWriter::write(const FrameView& frame) { return write_next(frame); }
+
+fs::path FrameWriter::write(const GridView& grid) { return write_next(grid); }
+
+template <class View>
+fs::path FrameWriter::write_next(const View& frame) {
   const std::string name = frame_name(base_name_, frames_.size());
   const fs::path path = folder_ / name;
   std::string image;

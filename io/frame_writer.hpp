@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -43,9 +45,21 @@ struct FrameView {
   std::vector<IntField> integers;
 };
 
+/// One moment of a run on the nodes of its grid. Every span has a value for each node, x fastest,
+/// then y, then z; node (i, j, k) lies at h (i, j, k). Rules for names and the time as at
+/// FrameView.
+struct GridView {
+  double time_s = 0.0;
+  double h_m = 0.0;                    ///< > 0
+  std::array<std::size_t, 3> nodes{};  ///< along x, y and z; one along z in the plane
+  std::vector<FrameView::Scalar> scalars;
+  std::vector<FrameView::Vector> vectors;
+};
+
 /// Writes frames that ParaView 5.11 opens: FOLDER/BASE_00012.hdf, each a VTKHDF 1.0
-/// UnstructuredGrid with one vertex cell per point, and FOLDER/BASE.hdf.series, which ties them to
-/// their times and is the file to open. Both are replaced as a whole, never in part, so a frame is
+/// UnstructuredGrid with one vertex cell per point, or the ImageData of a grid, and
+/// FOLDER/BASE.hdf.series, which ties them to their times and is the file to open. A series is of
+/// points or of a grid. Both are replaced as a whole, never in part, so a frame is
 /// complete or absent and the series names only complete frames.
 /// The same frame gives the same bytes (no time stamps).
 /// Not for use from several threads at once (HDF5 itself is not).
@@ -68,8 +82,9 @@ class FrameWriter {
   /// Writes the next frame and the series file. Returns the frame's path.
   /// Errors: IoError if either cannot be written (an older complete file is then still there, and
   /// the same call may be tried again); std::invalid_argument for a view that breaks the rules
-  /// given at FrameView.
+  /// given at FrameView or GridView.
   std::filesystem::path write(const FrameView& frame);
+  std::filesystem::path write(const GridView& grid);
 
   /// Frames written so far, those taken over by continued() included.
   std::size_t count() const { return frames_.size(); }
@@ -80,6 +95,8 @@ class FrameWriter {
     std::string file_name;
     double time_s;
   };
+  template <class View>
+  std::filesystem::path write_next(const View& view);
   void write_series(const std::vector<Entry>& frames) const;
 
   std::filesystem::path folder_;

@@ -85,19 +85,26 @@ hid_t type_of() {
   }
 }
 
-/// A dataset of rows × components values, row by row; components 1 makes it one-dimensional.
+/// A dataset of the given extents, the last one fastest; their product is values.size().
 template <typename T>
-void write_dataset(hid_t group, const std::string& name, std::span<const T> values,
-                   std::size_t components = 1) {
-  const std::array<hsize_t, 2> size{values.size() / components, components};
-  const Handle space(H5Screate_simple(components == 1 ? 1 : 2, size.data(), nullptr), H5Sclose,
-                     "describe " + name);
+void write_shaped(hid_t group, const std::string& name, std::span<const T> values,
+                  std::span<const hsize_t> extents) {
+  const Handle space(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr),
+                     H5Sclose, "describe " + name);
   const Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "describe " + name);
   check(H5Pset_obj_track_times(properties, false), "describe " + name);
   const Handle set(
       H5Dcreate2(group, name.c_str(), type_of<T>(), space, H5P_DEFAULT, properties, H5P_DEFAULT),
       H5Dclose, "create " + name);
   check(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "write " + name);
+}
+
+/// A dataset of rows × components values, row by row; components 1 makes it one-dimensional.
+template <typename T>
+void write_dataset(hid_t group, const std::string& name, std::span<const T> values,
+                   std::size_t components = 1) {
+  const std::array<hsize_t, 2> size{values.size() / components, components};
+  write_shaped<T>(group, name, values, std::span(size).first(components == 1 ? 1 : 2));
 }
 
 Handle create_group(hid_t parent, const char* name) {
@@ -107,16 +114,21 @@ Handle create_group(hid_t parent, const char* name) {
           std::string("create group ") + name};
 }
 
-/// The two attributes by which VTK knows the layout. The type must be a fixed-length ASCII string.
-void write_layout(hid_t root) {
-  const std::array<std::int64_t, 2> version{1, 0};
-  const hsize_t two = 2;
-  const Handle pair(H5Screate_simple(1, &two, nullptr), H5Sclose, "describe Version");
-  const Handle number(H5Acreate2(root, "Version", H5T_NATIVE_INT64, pair, H5P_DEFAULT, H5P_DEFAULT),
-                      H5Aclose, "create Version");
-  check(H5Awrite(number, H5T_NATIVE_INT64, version.data()), "write Version");
+template <typename T>
+void write_attribute(hid_t object, const char* name, std::span<const T> values) {
+  const hsize_t count = values.size();
+  const Handle list(H5Screate_simple(1, &count, nullptr), H5Sclose,
+                    std::string("describe ") + name);
+  const Handle set(H5Acreate2(object, name, type_of<T>(), list, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                   std::string("create ") + name);
+  check(H5Awrite(set, type_of<T>(), values.data()), std::string("write ") + name);
+}
 
-  constexpr std::string_view kind = "UnstructuredGrid";
+/// The two attributes by which VTK knows the layout. The type must be a fixed-length ASCII string.
+void write_layout(hid_t root, std::string_view kind) {
+  const std::array<std::int64_t, 2> version{1, 0};
+  write_attribute<std::int64_t>(root, "Version", version);
+
   const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose, "describe Type");
   const Handle text(H5Tcopy(H5T_C_S1), H5Tclose, "describe Type");
   check(H5Tset_size(text, kind.size()), "describe Type");
@@ -172,7 +184,7 @@ void write_fields(hid_t group, const FrameView& frame) {
 /// Collects the rules of FrameView, so that every kind of field is held to the same ones.
 class Rules {
  public:
-  explicit Rules(std::size_t points) : points_(points) {}
+  Rules(std::size_t points, std::string_view what) : points_(points), what_(what) {}
 
   void check_name(const std::string& name) {
     const bool unfit = std::any_of(name.begin(), name.end(), [](char c) {
@@ -186,7 +198,8 @@ class Rules {
   void check_size(const std::string& name, std::size_t size) const {
     if (size != points_)
       throw std::invalid_argument("frame: " + name + " has " + std::to_string(size) +
-                                  " values for " + std::to_string(points_) + " points");
+                                  " values for " + std::to_string(points_) + " " +
+                                  std::string(what_));
   }
   /// Of what stands for zeros where it is empty.
   void check_size_if_any(const std::string& name, std::size_t size) const {
@@ -195,16 +208,18 @@ class Rules {
 
  private:
   std::size_t points_;
+  std::string_view what_;  ///< that there are so many of
   std::set<std::string> names_;
 };
 
-void check_view(const FrameView& frame) {
-  if (frame.x_m.empty()) throw std::invalid_argument("frame: it has no points");
-  if (!std::isfinite(frame.time_s))
-    throw std::invalid_argument("frame: its time is " + std::to_string(frame.time_s) + " s");
-  Rules rules(frame.x_m.size());
-  rules.check_size("y_m", frame.y_m.size());
-  rules.check_size_if_any("z_m", frame.z_m.size());
+void check_time(double time_s) {
+  if (!std::isfinite(time_s))
+    throw std::invalid_argument("frame: its time is " + std::to_string(time_s) + " s");
+}
+
+/// Of what frames of points and of grids have alike.
+template <class View>
+void check_scalars_and_vectors(const View& frame, Rules& rules) {
   for (const auto& field : frame.scalars) {
     rules.check_name(field.name);
     rules.check_size(field.name, field.values.size());
@@ -214,6 +229,15 @@ void check_view(const FrameView& frame) {
     for (const auto& part : {field.x, field.y}) rules.check_size(field.name, part.size());
     rules.check_size_if_any(field.name, field.z.size());
   }
+}
+
+void check_view(const FrameView& frame) {
+  if (frame.x_m.empty()) throw std::invalid_argument("frame: it has no points");
+  check_time(frame.time_s);
+  Rules rules(frame.x_m.size(), "points");
+  rules.check_size("y_m", frame.y_m.size());
+  rules.check_size_if_any("z_m", frame.z_m.size());
+  check_scalars_and_vectors(frame, rules);
   for (const auto& field : frame.tensors) {
     rules.check_name(field.name);
     for (const auto& part : {field.xx, field.yy, field.zz, field.xy})
@@ -224,6 +248,17 @@ void check_view(const FrameView& frame) {
     rules.check_name(field.name);
     rules.check_size(field.name, field.values.size());
   }
+}
+
+std::size_t count_of(const GridView& grid) { return grid.nodes[0] * grid.nodes[1] * grid.nodes[2]; }
+
+void check_view(const GridView& grid) {
+  if (count_of(grid) == 0) throw std::invalid_argument("frame: its grid has no nodes");
+  if (!(grid.h_m > 0.0) || !std::isfinite(grid.h_m))
+    throw std::invalid_argument("frame: its cells are " + std::to_string(grid.h_m) + " m wide");
+  check_time(grid.time_s);
+  Rules rules(count_of(grid), "nodes");
+  check_scalars_and_vectors(grid, rules);
 }
 
 /// A file that lives in memory only (HDF5's core driver without a backing store).
@@ -317,14 +352,27 @@ Frame read_vtkhdf(std::string& image) {
   return frame;
 }
 
-std::string vtkhdf_image(const FrameView& frame) {
-  check_view(frame);
+namespace {
+
+/// A file of one frame; `write` is given its group VTKHDF.
+template <class F>
+std::string image_with(F&& write) {
   const SilentErrors silent;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "set up memory");
   const Handle file = create_in_memory(access);
   {
     const Handle root = create_group(file, "VTKHDF");
-    write_layout(root);
+    write(root);
+  }
+  return image_of(file);
+}
+
+}  // namespace
+
+std::string vtkhdf_image(const FrameView& frame) {
+  check_view(frame);
+  return image_with([&](hid_t root) {
+    write_layout(root, "UnstructuredGrid");
     write_columns(root, "Points", frame.x_m.size(), {frame.x_m, frame.y_m, frame.z_m});
     write_cells(root, frame.x_m.size());
     const Handle fields = create_group(root, "PointData");
@@ -332,8 +380,41 @@ std::string vtkhdf_image(const FrameView& frame) {
     // ParaView shows it as the data's time even for a frame opened by itself.
     const Handle whole = create_group(root, "FieldData");
     write_dataset<double>(whole, "TimeValue", std::span<const double>(&frame.time_s, 1));
-  }
-  return image_of(file);
+  });
+}
+
+std::string vtkhdf_image(const GridView& grid) {
+  check_view(grid);
+  return image_with([&](hid_t root) {
+    write_layout(root, "ImageData");
+    const auto last = [&](std::size_t axis) {
+      return static_cast<std::int64_t>(grid.nodes[axis]) - 1;
+    };
+    // ParaView 5.11 writes beyond its own arrays where y or z has one layer of nodes. So in the
+    // plane the axes of the image are z, x and y, which its directions say.
+    const bool plane = grid.nodes[2] == 1;
+    write_attribute<std::int64_t>(
+        root, "WholeExtent",
+        plane ? std::array<std::int64_t, 6>{0, 0, 0, last(0), 0, last(1)}
+              : std::array<std::int64_t, 6>{0, last(0), 0, last(1), 0, last(2)});
+    write_attribute<double>(root, "Origin", std::array<double, 3>{});
+    write_attribute<double>(root, "Spacing", std::array{grid.h_m, grid.h_m, grid.h_m});
+    write_attribute<double>(root, "Direction",
+                            plane ? std::array<double, 9>{0, 1, 0, 0, 0, 1, 1, 0, 0}
+                                  : std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+    const Handle fields = create_group(root, "PointData");
+    std::vector<hsize_t> extents{grid.nodes[2], grid.nodes[1], grid.nodes[0]};
+    if (plane) extents = {grid.nodes[1], grid.nodes[0], 1};
+    for (const auto& field : grid.scalars)
+      write_shaped<double>(fields, field.name, field.values, extents);
+    extents.push_back(3);
+    for (const auto& field : grid.vectors) {
+      const std::array columns{field.x, field.y, field.z};
+      write_shaped<double>(fields, field.name, interleave(count_of(grid), columns), extents);
+    }
+    // no TimeValue: ParaView 5.11 takes every dataset of an image for one of nodes; the series has
+    // it
+  });
 }
 
 }  // namespace repose::io

@@ -15,7 +15,10 @@ namespace repose::io {
 /// std::runtime_error with HDF5's own reason (in practice: out of memory).
 std::string vtkhdf_image(const FrameView& frame);
 
-/// Reads such bytes back; read_frame() is the way to it.
+/// The same of a grid, as VTKHDF 1.0 ImageData.
+std::string vtkhdf_image(const GridView& grid);
+
+/// Reads the bytes of a frame of points back; read_frame() is the way to it.
 /// Errors: std::runtime_error with HDF5's own reason, or that they are no VTKHDF file of points.
 Frame read_vtkhdf(std::string& image);
 

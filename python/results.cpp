@@ -15,6 +15,10 @@ void bind_results(py::module_& module) {
       },
       py::arg("series"), "(file, time) of every frame that a NAME.hdf.series lists.");
   module.def(
+      "point_series_in",
+      [](const std::string& folder) { return io::point_series_in(folder).string(); },
+      py::arg("folder"), "The NAME.hdf.series of a folder that is of points, or \"\".");
+  module.def(
       "read_frame",
       [](const std::string& path) {
         io::Frame frame = [&] {

@@ -33,6 +33,8 @@ def series_of(result):
     if result.endswith(".series"):
         return result
     found = glob.glob(os.path.join(glob.escape(result), "frames", "*.hdf.series"))
+    grids = {name.replace(".hdf.series", "_grid.hdf.series") for name in found}
+    found = [name for name in found if name not in grids]  # what is drawn is the points
     if len(found) != 1:
         sys.exit(f"{result}: there is no frames/NAME.hdf.series; the run has output.frame_interval = 0?")
     return found[0]

@@ -146,6 +146,7 @@ struct Scene {
 
   bool shear_strain = false;     ///< points remember ∫γ̇ dt
   double frame_interval = 0.0;   ///< [s]; 0: no frames
+  bool grid_frames = false;      ///< of the grid, beside every frame of the points
   double series_interval = 0.0;  ///< [s]; 0: first and last row only
 };
 

@@ -158,7 +158,7 @@ Estimate estimate(const Scene& scene, int threads) {
     e.warnings.push_back(fmt::format("the first steps fail: {}", failure.what()));
   }
   if (steps > 0) e.seconds = elapsed() / steps * e.steps;
-  e.memory_MB = simulation.counters().memory_MB;
+  e.memory_MB = simulation.counters().memory_MB + needs.grid_frames_MB;
   for (const std::string& warning : simulation.warnings()) e.warnings.push_back(warning);
   if (!scene.dt && e.steps > 1e7)
     e.warnings.push_back(fmt::format(

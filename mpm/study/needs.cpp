@@ -21,11 +21,12 @@ double blocks_of(double cells, int block_cells, double more) {
 template <int dim>
 Needs needs_in(const Scene& scene) {
   Needs needs;
-  double tables = 1.0;
+  double tables = 1.0, nodes = 1.0;
   needs.box_cells = 1.0;
   for (std::size_t k = 0; k < dim; ++k) {
     const double cells = scene.domain[k] / scene.h;
     needs.box_cells *= cells;
+    nodes *= cells + 1.0;
     tables *= blocks_of(cells + 2.0, Shape<dim>::cells[k], 3.0);
   }
   double slots_bytes = 0.0, point_blocks = 0.0, node_blocks = 0.0;
@@ -57,7 +58,11 @@ Needs needs_in(const Scene& scene) {
   const double of_grid = 1.5 * (point_blocks * (sizeof(PointBlockOf<dim>) + sizeof(TileOf<dim>)) +
                                 node_blocks * sizeof(NodeBlockOf<dim>));
   const double of_tables = tables * (2.0 * sizeof(std::int32_t) + sizeof(std::size_t));
-  needs.memory_MB = (of_points + of_grid + of_tables) / 1e6;
+  // a frame of the grid is of the whole box: mass and velocity twice, the vector side by side, and
+  // the file three times (within HDF5, as its image, sealed)
+  constexpr double of_node = (2.0 * (1.0 + dim) + 3.0 + 3.0 * 4.0) * sizeof(double);
+  if (scene.grid_frames && scene.frame_interval > 0.0) needs.grid_frames_MB = nodes * of_node / 1e6;
+  needs.memory_MB = (of_points + of_grid + of_tables) / 1e6 + needs.grid_frames_MB;
   return needs;
 }
 

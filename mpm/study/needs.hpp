@@ -11,6 +11,7 @@ struct Needs {
   double points = 0.0;
   double box_cells = 0.0;
   double memory_MB = 0.0;  ///< of points, grid and tables, with what sorting and spreading takes
+  double grid_frames_MB = 0.0;  ///< what of it writing a frame of the grid takes for a moment
 };
 
 /// Of a scene that validate() accepts.

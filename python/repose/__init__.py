@@ -15,7 +15,8 @@ A mistake is an `InputError` that lists all that is wrong; what cannot be comput
 `NumericalFailure`; a file that cannot be read or written is an `OSError`.
 """
 
-from ._core import (InputError, NumericalFailure, batch_array, instruction_set, json_schema, keys,
+from . import _core, arguments
+from ._core import (InputError, NumericalFailure, batch_array, instruction_set,
                     shipped_cases, shipped_scenes, shipped_tests, version)
 from .columns import Columns
 from .fitting import FitResult, fit
@@ -27,6 +28,17 @@ from .simulation import Nodes, Points, Simulation, estimate
 from .verbs import chart, run, sweep, validate
 
 __version__ = version
+
+
+def keys(kind: str) -> list[dict]:
+    """Every key of a kind of input, "scene", "test", "fit", "chart" or "case": name, unit, range,
+    meaning, default."""
+    return _core.keys(arguments.text("keys: kind", kind))
+
+
+def json_schema(kind: str) -> str:
+    """A JSON Schema of a kind of input, as text."""
+    return _core.json_schema(arguments.text("json_schema: kind", kind))
 
 
 def cmake_dir() -> str:

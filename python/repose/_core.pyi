@@ -187,6 +187,9 @@ def law_description(name: str) -> str:
 def laws() -> list:
     """Every form of every law: its tables."""
 
+def point_series_in(folder: str) -> str:
+    """The NAME.hdf.series of a folder that is of points, or ""."""
+
 def read_frame(path: str) -> dict:
     """A frame: time_s, position_m and its fields, by name."""
 

@@ -26,7 +26,9 @@ class Columns(Mapping):
     def read(cls, file: os.PathLike | str) -> "Columns":
         """A CSV table that repose has written."""
         with open(file, newline="", encoding="utf-8") as stream:
-            rows = list(csv.reader(stream))
+            written = stream.read()
+        # a line without its end is a row that was being written when the run was stopped
+        rows = list(csv.reader(written[:written.rfind("\n") + 1].splitlines()))
         return cls._of_rows(rows, os.path.basename(os.fspath(file)))
 
     @classmethod

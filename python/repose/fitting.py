@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core
+from . import _core, arguments
 from .columns import Columns
 from .inputs import Source, open_input
 from .law import Law
@@ -86,9 +86,14 @@ def fit(source: Source, /, *, output: str | os.PathLike | None = None, seed: int
     (fit.json, fitted.toml, predictions.csv, pictures); the tables are then read from there.
     Raises InputError; NumericalFailure where no start comes to an end.
     """
+    seed = arguments.whole("fit: seed", seed, below=2**64)
+    threads = arguments.whole("fit: threads", threads)
+    arguments.flags("fit", plot=plot, resume=resume, quiet=quiet)
+    arguments.callback("fit: progress", progress)
+    folder = None if output is None else arguments.path("fit: output", output)
     given = open_input("fit", source, changes)
-    if output is not None:
-        return _in_folder(given, os.fspath(output), seed, threads, resume, quiet, plot)
+    if folder is not None:
+        return _in_folder(given, folder, seed, threads, resume, quiet, plot)
     found = _core.solve_fit(given, seed, threads, "", progress)
     if "report" not in found:
         raise _core.NumericalFailure(f"{found['name']}: no start came to an end")

@@ -10,7 +10,7 @@ from typing import Any, Union
 
 import numpy as np
 
-from . import _core
+from . import _core, arguments
 
 Source = Union[str, os.PathLike, Mapping]
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
@@ -119,6 +119,7 @@ def open_input(kind: str, source: Source, changes: Mapping, law: Any = None,
     a name, changes keys of it. replaced: whole tables that stand in for those of the source. placed: the same
     at any place, {"body[0].law": law}; changes come after them.
     """
+    arguments.source(kind.replace("point_test", "test").replace("fit", "source"), source)
     whole = dict(replaced or {})
     if isinstance(law, Mapping) and "name" not in law:
         changes = {**changes, "law": law}
@@ -130,8 +131,5 @@ def open_input(kind: str, source: Source, changes: Mapping, law: Any = None,
         for path, value in changes.items():
             _put(table, path, value)
         return _core.Input.table(document(table), kind.replace("_", " "), [])
-    if not isinstance(source, (str, os.PathLike)):
-        raise TypeError(f"{kind}: a dictionary, the path of a file or the name of a shipped one is "
-                        f"needed, not a {type(source).__name__}")
     sets = [f"{path}={toml(value, path)}" for path, value in {**whole, **changes}.items()]
     return _core.Input.open(kind, os.fspath(source), sets)

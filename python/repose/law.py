@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
-from .inputs import document
+from . import _core, arguments
+from .inputs import document, refused
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def laws(name: str | None = None) -> list[LawInfo]:
     found = [LawInfo._of(tables) for tables in _core.laws()]
     if name is None:
         return found
-    _core.law_description(name)  # says which names there are
+    _core.law_description(arguments.text("laws: name", name))  # says which names there are
     return [info for info in found if info.name == name]
 
 
@@ -131,6 +131,9 @@ class Law:
                **conditions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """`count` equal points at rest: stress (count, components), state, density, in memory that
         `update(..., in_place=True)` takes."""
+        count = arguments.whole("points: count", count)
+        if arguments.whole("points: components", components) not in (4, 6):
+            raise refused(f"points: components = {components} must be 4, of plane strain, or 6")
         stress, state, density = self.initial(**conditions)
         all_stress = _core.batch_array(count, components)
         all_state = _core.batch_array(count, len(state))
@@ -142,7 +145,8 @@ class Law:
 
     def density_at(self, p: float, ocr: float = 1.0) -> float:
         """Density at rest under the mean pressure p [Pa], in kg/m3."""
-        return self._law.density_at(p, ocr)
+        return self._law.density_at(arguments.number("density_at: p", p),
+                                    arguments.number("density_at: ocr", ocr))
 
     def update(self, stress: np.ndarray, state: np.ndarray, density: np.ndarray,
                strain: np.ndarray, dt: float, spin: np.ndarray | None = None,
@@ -155,7 +159,8 @@ class Law:
         be such as `points` makes. Raises InputError for shapes, NumericalFailure for a point that
         cannot be advanced (in place, that point is then left as it was).
         """
-        return self._law.update(stress, state, density, strain, dt, spin, in_place)
+        return self._law.update(stress, state, density, strain, arguments.number("update: dt", dt), spin,
+                                arguments.flag("update: in_place", in_place))
 
     def tangent(self, stress: np.ndarray, state: np.ndarray, density: np.ndarray,
                 strain: np.ndarray, dt: float, spin: np.ndarray | None = None) -> np.ndarray:
@@ -163,7 +168,7 @@ class Law:
 
         Exact for the library's laws; of a law in Python by central differences.
         """
-        return self._law.tangent(stress, state, density, strain, dt, spin)
+        return self._law.tangent(stress, state, density, strain, arguments.number("tangent: dt", dt), spin)
 
     def modulus(self, stress: np.ndarray, state: np.ndarray, density: np.ndarray) -> np.ndarray:
         """P-wave modulus rho c^2 of every point, in Pa."""
@@ -177,6 +182,10 @@ class Law:
                       density: np.ndarray) -> np.ndarray:
         """Recoverable energy per current volume, in J/m3."""
         return self._law.stored_energy(stress, state, density)
+
+    def __reduce__(self) -> tuple:
+        # its table makes it again; a law of one's own must be registered where it is read
+        return Law, (self.as_table(),)
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{key}={value!r}" for key, value in self.as_table().items()

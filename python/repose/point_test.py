@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core
+from . import _core, arguments
 from .inputs import Source, open_input, refused
 from .law import Law
 from .names import nearest
@@ -34,6 +34,8 @@ class PointResult(Mapping):
         self.law = law
 
     def __getitem__(self, column: str) -> np.ndarray:
+        if not isinstance(column, str):
+            raise nearest(column, self.columns, "a test has no column")
         try:
             return self._driven.column(column)
         except _core.InputError:
@@ -118,16 +120,20 @@ class PointResult(Mapping):
 
     def write(self, file: str | os.PathLike) -> None:
         """Writes curve.csv."""
-        Path(file).write_text(self._driven.csv(), encoding="utf-8")
+        Path(arguments.path("write: file", file)).write_text(self._driven.csv(), encoding="utf-8")
 
     def picture(self, file: str | os.PathLike) -> None:
         """Draws the picture of `repose point`, an SVG, with gnuplot."""
-        self._driven.picture(os.fspath(file))
+        self._driven.picture(arguments.path("picture: file", file))
 
     def plot(self) -> "Figure":
         """A matplotlib figure of the test."""
         from .plotting import point_figure
         return point_figure(self)
+
+    def __reduce__(self) -> tuple:
+        raise TypeError("a driven test is not pickled: keep its columns, dict(result), or pickle its "
+                        "PointTest and drive that again")
 
     def __repr__(self) -> str:
         return (f"<point test {self.name!r} of {self.law}: {self.rows} rows, {self.reason}; "
@@ -152,6 +158,7 @@ class PointTest:
         if given.has("sweep"):
             raise refused(f"{given.name}: has a [sweep], many tests in one: repose.sweep drives them")
         self._test = _core.PointTest(given)
+        self._given = (test, law, changes)
 
     @property
     def name(self) -> str:
@@ -169,6 +176,8 @@ class PointTest:
         Raises NumericalFailure where the path cannot be finished, its `result` being the part done;
         with strict=False that is returned.
         """
+        arguments.flags("run", strict=strict)
+        parameters = {name: arguments.number(f"run: {name}", x) for name, x in parameters.items()}
         test = self._test.with_parameters(parameters) if parameters else self._test
         result = PointResult(test.run(), test.name, test.law)
         if strict and not result.ok:
@@ -184,14 +193,23 @@ class PointTest:
         Taken at a row's place on the path, in dual numbers; parameters that the law derives from
         others follow them.
         """
-        names = list(columns)
-        status, _, derivatives = self._test.sensitivities(list(parameters), names)
+        names = arguments.texts("sensitivities: columns", columns)
+        status, _, derivatives = self._test.sensitivities(
+            arguments.texts("sensitivities: parameters", parameters), names)
         if status not in ("completed", "stopped"):
             raise _core.NumericalFailure(f"{self.name}: the derivatives end with: {status}")
         return dict(zip(names, derivatives))
 
+    def __reduce__(self) -> tuple:
+        # what it was made from: a file is read again
+        return _made_again, self._given
+
     def __repr__(self) -> str:
         return f"<point test {self.name!r} of {self._test.law}, {self._test.stages} stage(s)>"
+
+
+def _made_again(test: Source, law: Law | Mapping | None, changes: Mapping) -> PointTest:
+    return PointTest(test, law, **changes)
 
 
 def point(test: Source, /, law: Law | Mapping | None = None, *, strict: bool = True,
@@ -203,8 +221,10 @@ def point(test: Source, /, law: Law | Mapping | None = None, *, strict: bool = T
     Raises InputError, and NumericalFailure where the path cannot be finished (its `result` is the
     part done; strict=False returns it).
     """
+    arguments.flags("point", strict=strict, plot=plot, quiet=quiet)
     prepared = PointTest(test, law, **changes)
     if output is not None:
+        output = arguments.path("point: output", output)
         given = open_input("point_test", test, changes, law)
-        _core.run_test(given, given.name, os.fspath(output), 0, 0, False, quiet, plot)
+        _core.run_test(given, given.name, output, 0, 0, False, quiet, plot)
     return prepared.run(strict=strict)

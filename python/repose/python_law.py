@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
+from . import _core, arguments
 from .inputs import refused
 
 
@@ -159,6 +159,8 @@ def register_law(law: type[PythonLaw]) -> type[PythonLaw]:
     Raises InputError where the name is taken (a name stands for one law as long as the program
     runs) or a table is none.
     """
+    if not isinstance(law, type):
+        raise arguments.wrong("register_law: law", "a class that inherits from repose.PythonLaw", law)
     made = law()
     if not isinstance(made, PythonLaw):
         raise TypeError(f"{law.__name__} does not inherit from repose.PythonLaw")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core
+from . import _core, arguments
 from .columns import Columns
 from .names import nearest
 
@@ -33,8 +33,8 @@ class Frames(Sequence):
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        series = sorted(folder.glob("*.hdf.series")) if folder.is_dir() else []
-        self._entries = _core.read_frame_series(os.fspath(series[0])) if series else []
+        series = _core.point_series_in(os.fspath(folder))
+        self._entries = _core.read_frame_series(series) if series else []
 
     @property
     def times(self) -> np.ndarray:
@@ -64,7 +64,7 @@ class Result:
     """
 
     def __init__(self, folder: str | os.PathLike) -> None:
-        self.folder = Path(folder)
+        self.folder = Path(arguments.path("Result: folder", folder))
         if not (self.folder / "summary.json").is_file() and not (self.folder / "input.toml").is_file():
             raise FileNotFoundError(f"{self.folder}: no result of repose is there (neither "
                                     f"summary.json nor input.toml)")
@@ -92,8 +92,23 @@ class Result:
 
     @property
     def status(self) -> str:
-        """"done", "interrupted", "failed", "running" (of a run that was killed), ..."""
-        return self.summary.get("status", "")
+        """"done", "failed", ...; without an end, "running" while a process has the folder, and
+        "interrupted" after it was stopped or killed. Tables are then readable as far as they were written."""
+        noted = self.summary.get("status", "running")
+        if noted != "running":
+            return noted
+        return "running" if self._claimed() else "interrupted"
+
+    def _claimed(self) -> bool:
+        """Whether a process that lives has written its number into the folder."""
+        try:
+            process = int((self.folder / ".repose-lock").read_text(encoding="utf-8"))
+            os.kill(process, 0)
+        except PermissionError:  # there is such a process, of somebody else
+            return True
+        except (OSError, ValueError):
+            return False
+        return True
 
     @property
     def name(self) -> str:
@@ -109,7 +124,8 @@ class Result:
         """A CSV table of the folder."""
         file = self.folder / f"{name}.csv"
         if not file.is_file():
-            raise nearest(name, self.tables, f"{self.folder} has no table")
+            raise nearest(arguments.text("table: name", name), self.tables,
+                          f"{self.folder} has no table")
         return Columns.read(file)
 
     def __getattr__(self, name: str) -> Columns:
@@ -137,6 +153,9 @@ class Result:
     def fit(self) -> dict[str, Any]:
         """fit.json."""
         return json.loads((self.folder / "fit.json").read_text(encoding="utf-8"))
+
+    def __reduce__(self) -> tuple:
+        return Result, (self.folder,)
 
     def plot(self) -> "Figure":
         """A matplotlib figure of what the folder holds."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core
+from . import _core, arguments
 from .columns import Columns
 from .inputs import Source, document, open_input, refused
 
@@ -90,6 +89,7 @@ class Simulation:
     """
 
     def __init__(self, scene: Source, /, law: Any = None, *, threads: int = 0, **changes: Any) -> None:
+        threads = arguments.whole("Simulation: threads", threads)
         self._sim = _core.Simulation(open_scene(scene, law, changes), threads)
 
     def step(self, until: float | None = None, steps: int | None = None) -> float:
@@ -101,11 +101,10 @@ class Simulation:
         if until is not None and steps is not None:
             raise refused("step: give until, a time, or steps, a number; not both")
         if until is None:
-            count = 1 if steps is None else operator.index(steps)
-            if count < 0:
-                raise refused(f"step: steps = {count} must be >= 0")
+            count = 1 if steps is None else arguments.whole("step: steps", steps, below=2**63)
             self._sim.advance(np.inf, count)
         else:
+            until = arguments.number("step: until", until)
             if not until >= self.time:
                 raise refused(f"step: until = {until} s must not lie before the time of the "
                               f"simulation, {self.time} s")
@@ -193,7 +192,7 @@ class Simulation:
 
     @gravity.setter
     def gravity(self, gravity: float) -> None:
-        self._sim.set_gravity(gravity, self.tilt_deg)
+        self._sim.set_gravity(arguments.number("gravity", gravity), self.tilt_deg)
 
     @property
     def tilt_deg(self) -> float:
@@ -202,11 +201,14 @@ class Simulation:
 
     @tilt_deg.setter
     def tilt_deg(self, tilt_deg: float) -> None:
-        self._sim.set_gravity(self.gravity, tilt_deg)
+        self._sim.set_gravity(self.gravity, arguments.number("tilt_deg", tilt_deg))
 
     def set_wall(self, edge: str, wall: str | Mapping) -> None:
         """Goes on with another edge: "floor", "left", "right", "top" ("near", "far"); wall as in
         [domain], "slip", "no_slip", "open", {"friction": 0.4}, {"speed": 0.1}."""
+        arguments.text("set_wall: edge", edge)
+        if not isinstance(wall, str):
+            arguments.table("set_wall: wall, unless a text,", wall)
         text = document({"domain": {edge: wall}})
         self._sim.set_wall(edge, _core.Input.table(text, "set_wall", []))
 
@@ -214,6 +216,7 @@ class Simulation:
         """Saves the whole state: FILE, a checkpoint, and beside it FILE.toml, the scene as it is
         now. `Simulation.load` goes on from them with the same bits. Where it fails, what was there
         stays."""
+        arguments.path("save: file", file)
         path, scene = Path(file), _scene_beside(file)
         if path.name == "" or path.is_dir():
             raise IsADirectoryError(f"save: {os.fspath(file)!r} is a folder; a file is needed")
@@ -230,7 +233,8 @@ class Simulation:
     @classmethod
     def load(cls, file: str | os.PathLike, *, threads: int = 0) -> "Simulation":
         """The simulation that was saved. Raises OSError where the files are none of `save`."""
-        path = Path(file)
+        path = Path(arguments.path("load: file", file))
+        threads = arguments.whole("load: threads", threads)
         simulation = cls(_scene_beside(path), threads=threads)
         simulation._sim.load(os.fspath(path))
         return simulation
@@ -241,9 +245,13 @@ class Simulation:
     def __deepcopy__(self, memo: dict) -> "Simulation":
         return self.__copy__()
 
+    def __reduce__(self) -> tuple:
+        raise TypeError("a simulation is not pickled: save() it to a file and load() that, or pickle what "
+                        "was taken from it: points, diagnostics()")
+
     def picture(self, file: str | os.PathLike) -> bool:
         """Draws the picture of `repose run`, an SVG, with gnuplot; False if there is nothing."""
-        return self._sim.picture(os.fspath(file))
+        return self._sim.picture(arguments.path("picture: file", file))
 
     def plot(self, colour: str = "speed") -> "Figure":
         """A matplotlib figure of the points, coloured by "speed", "pressure" or "density"."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from . import _core
+from . import _core, arguments
 from .inputs import Source, open_input, toml
 from .result import Result
 
@@ -28,7 +28,7 @@ def _ended(code: int, folder: str | os.PathLike) -> Result:
 
 
 def _folder(output: str | os.PathLike | None, name: str) -> str:
-    return os.fspath(output) if output is not None else os.path.join("results", name)
+    return arguments.path("output", output) if output is not None else os.path.join("results", name)
 
 
 def run(scene: Source, /, output: str | os.PathLike | None = None, *, resume: bool = False,
@@ -40,6 +40,9 @@ def run(scene: Source, /, output: str | os.PathLike | None = None, *, resume: bo
     last checkpoint. Ctrl-C leaves a checkpoint and raises KeyboardInterrupt; a run that fails
     raises NumericalFailure, its `result` being what there is.
     """
+    threads = arguments.whole("run: threads", threads)
+    seed = arguments.whole("run: seed", seed, below=2**64)
+    arguments.flags("run", resume=resume, quiet=quiet, plot=plot)
     given = open_input("scene", scene, changes)
     if given.has("sweep"):
         name = Path(given.name).stem
@@ -63,10 +66,15 @@ def sweep(source: Source, /, *, grid: Mapping | None = None, list: Iterable[Mapp
     row per run; of tests `curves`, of scenes `runs`. Runs side by side on `threads` (0: all cores)
     with the same bytes for any number.
     """
+    threads = arguments.whole("sweep: threads", threads)
+    arguments.flags("sweep", resume=resume, quiet=quiet, plot=plot)
+    arguments.source("sweep: source", source)
+    if list is not None and (isinstance(list, (str, Mapping)) or not isinstance(list, Iterable)):
+        raise arguments.wrong("sweep: list", "a list of dictionaries", list)
     ways = {key: value for key, value in (("grid", grid), ("list", list), ("table", table))
             if value is not None}
     if "list" in ways:
-        ways["list"] = [dict(one) for one in ways["list"]]
+        ways["list"] = [dict(arguments.table("sweep: an entry of list", one)) for one in ways["list"]]
     replaced = {"sweep": ways} if ways else {}
     given = _either(source, changes, replaced)
     folder = _folder(output, "sweep" if isinstance(source, Mapping) else Path(given.name).stem)
@@ -90,11 +98,14 @@ def validate(cases: str | Iterable[str] | None = None, /, *, laws: Iterable[str]
     cases: names (`shipped_cases()`) or folders with a case.toml; None: all that are shipped. laws:
     only these columns. coarse: the coarsest cells alone, without error bars.
     """
+    if cases is not None and not isinstance(cases, (str, os.PathLike, Iterable)):
+        raise arguments.wrong("validate: cases", "a name or a list of names", cases)
     names = [cases] if isinstance(cases, (str, os.PathLike)) else [*(cases or ())]
     folder = _folder(output, "validate")
-    arguments = ["validate", *map(os.fspath, names), "-o", folder,
-                 *(word for law in laws for word in ("--law", law)), *_sets(changes)]
-    return _verb(arguments, folder, coarse=coarse, resume=resume, threads=threads, quiet=quiet,
+    words = ["validate", *(arguments.path("validate: a case", name) for name in names), "-o", folder,
+             *(word for law in arguments.texts("validate: laws", laws) for word in ("--law", law)),
+             *_sets(changes)]
+    return _verb(words, folder, coarse=coarse, resume=resume, threads=threads, quiet=quiet,
                  plot=plot)
 
 
@@ -103,11 +114,13 @@ def chart(what: str, /, file: str | os.PathLike | None = None, *, quick: bool = 
           quiet: bool = False, plot: bool = True, **changes: Any) -> Result:
     """Speed against accuracy, as `repose chart` does: "point", "fit", "mpm", "all", or a file with
     a [chart] table."""
+    arguments.path("chart: what", what)
     name = "gallery" if what == "all" else f"chart_{Path(what).stem}"
     folder = _folder(output, name)
-    arguments = ["chart", what, *([os.fspath(file)] if file is not None else []), "-o", folder,
-                 *_sets(changes)]
-    return _verb(arguments, folder, quick=quick, resume=resume, threads=threads, quiet=quiet,
+    words = ["chart", os.fspath(what),
+             *([arguments.path("chart: file", file)] if file is not None else []), "-o", folder,
+             *_sets(changes)]
+    return _verb(words, folder, quick=quick, resume=resume, threads=threads, quiet=quiet,
                  plot=plot)
 
 
@@ -117,11 +130,12 @@ def _sets(changes: Mapping) -> list[str]:
             for word in ("--set", f"{path}={toml(value, path)}")]
 
 
-def _verb(arguments: list[str], folder: str, *, threads: int | None, plot: bool,
+def _verb(words: list[str], folder: str, *, threads: int | None, plot: bool,
           **flags: bool) -> Result:
-    arguments = [*arguments, *(f"--{name}" for name, wanted in flags.items() if wanted)]
+    arguments.flags(words[0], plot=plot, **flags)
+    words = [*words, *(f"--{name}" for name, wanted in flags.items() if wanted)]
     if threads is not None:
-        arguments += ["--threads", str(threads)]
+        words += ["--threads", str(arguments.whole("threads", threads))]
     if not plot:
-        arguments.append("--no-plot")
-    return _ended(_core.run_verb(arguments), folder)
+        words.append("--no-plot")
+    return _ended(_core.run_verb(words), folder)

@@ -88,14 +88,10 @@ Json frames_of(const fs::path& series) {
 }
 
 void add_frames(Json& result, const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) return;
-  for (const fs::path& file : files_in(folder)) {
-    if (!file.string().ends_with(".hdf.series")) continue;
-    Json frames = frames_of(file);
-    if (!frames["times"].empty()) result["frames"] = std::move(frames);
-    return;
-  }
+  const fs::path series = io::point_series_in(folder);
+  if (series.empty()) return;
+  Json frames = frames_of(series);
+  if (!frames["times"].empty()) result["frames"] = std::move(frames);
 }
 
 }  // namespace

@@ -8,9 +8,11 @@
 #include <fmt/core.h>
 
 #include "input/resolved_scene.hpp"
+#include "io/frame_reader.hpp"
 #include "io/interrupt.hpp"
 #include "io/json.hpp"
 #include "mpm/output/frame_fields.hpp"
+#include "mpm/output/grid_frame.hpp"
 #include "mpm/study/needs.hpp"
 #include "study/run/finished_result.hpp"
 #include "study/run/output_schedule.hpp"
@@ -106,8 +108,10 @@ class Run {
   std::optional<io::RowWriter> series_;
   std::optional<io::FrameWriter> frames_;
   mpm::FrameFields frame_fields_;  ///< a run that fails writes a frame whatever it was asked for
-  double next_checkpoint_ = 0.0;   ///< by the clock of usage() [s]
-  std::set<std::string> told_;     ///< warnings already printed, without_figures()
+  std::optional<io::FrameWriter> grid_frames_;
+  mpm::GridFrame grid_frame_;
+  double next_checkpoint_ = 0.0;           ///< by the clock of usage() [s]
+  std::set<std::string> told_;             ///< warnings already printed, without_figures()
   std::vector<std::string> own_warnings_;  ///< beside the simulation's
 };
 
@@ -137,6 +141,8 @@ void Run::start() {
   series_.emplace(
       io::RowWriter::create(folder_.file("series.csv"), series_columns(scene_.dimensions())));
   if (scene_.frame_interval > 0.0) frames_.emplace(folder_.frames(), scene_.name);
+  if (frames_ && scene_.grid_frames)
+    grid_frames_.emplace(folder_.frames(), io::grid_series_name(scene_.name));
   voice_.event({{"event", "start"},
                 {"name", scene_.name},
                 {"points", record_.initial_points},
@@ -157,6 +163,9 @@ void Run::resume() {
                                            series_columns(scene_.dimensions()), time));
   if (scene_.frame_interval > 0.0)
     frames_ = io::FrameWriter::continued(folder_.frames(), scene_.name, time);
+  if (frames_ && scene_.grid_frames)
+    grid_frames_ =
+        io::FrameWriter::continued(folder_.frames(), io::grid_series_name(scene_.name), time);
   voice_.event({{"event", "resume"},
                 {"name", scene_.name},
                 {"time_s", time},
@@ -257,7 +266,9 @@ void Run::write_due() {
 
 void Run::write_frame() {
   const mpm::Simulation::Snapshot shot = simulation_.snapshot(request_.file.stress);
-  if (!shot.x_m.empty()) frames_->write(frame_fields_.view(shot, simulation_.time()));
+  if (shot.x_m.empty()) return;
+  frames_->write(frame_fields_.view(shot, simulation_.time()));
+  if (grid_frames_) grid_frames_->write(grid_frame_.view(simulation_));
 }
 
 void Run::write_profile() const {
@@ -328,7 +339,8 @@ io::ExitCode Run::finish() {
   voice_.event(
       {{"event", "end"}, {"status", "done"}, {"exit", 0}, {"folder", folder_.path().string()}});
   std::string files = drawn ? "final.svg, series.csv, profile.csv" : "series.csv, profile.csv";
-  if (frames_) files += fmt::format(", frames/{}", frames_->series_path().filename().string());
+  for (const auto* const frames : {&frames_, &grid_frames_})
+    if (*frames) files += fmt::format(", frames/{}", (*frames)->series_path().filename().string());
   voice_.say(fmt::format(
       "{}: done in {}, {} steps, {:.1f} Mpoint-steps/s\n"
       "  front {:.4g} m, height {:.4g} m, kinetic energy {:.2g} {}, energy error {:.2g} %\n"

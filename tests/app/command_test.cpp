@@ -198,7 +198,7 @@ TEST_F(CommandTest, BadInputIsToldWithItsPlaceAndLeavesNothing) {
       "wrong.toml:15:1: output.colour must be one of \"mises\", \"density\"; got the string "
       "\"red\"\n"
       "wrong.toml:16:1: unknown key 'foo' in [output]; [output] takes checkpoint_interval, colour, "
-      "frame_interval, series_interval, shear_strain, stress\n");
+      "frame_interval, grid_frames, series_interval, shear_strain, stress\n");
   const Json event = Json::parse(wrong.out);
   EXPECT_EQ(event.at("event"), "error");
   EXPECT_EQ(event.at("exit"), 2);
@@ -262,6 +262,41 @@ TEST_F(CommandTest, ARunLeavesACompleteResult) {
   ASSERT_EQ(run_2.exit, 0) << run_2.err;
   EXPECT_EQ(content_of(base_ / "again" / "series.csv"), content_of(folder / "series.csv"));
   EXPECT_EQ(content_of(base_ / "again" / "profile.csv"), content_of(folder / "profile.csv"));
+}
+
+TEST_F(CommandTest, FramesOfTheGridStandBesideThoseOfThePoints) {
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"run", "tiny.toml", "--no-plot", "--set", "scene.end_time=0.01"});
+    return run(more);
+  };
+  const Outcome done =
+      with({"--set", "output.frame_interval=0.005", "--set", "output.grid_frames=true"});
+  ASSERT_EQ(done.exit, 0) << done.err;
+  EXPECT_NE(done.out.find("frames/tiny.hdf.series, frames/tiny_grid.hdf.series"), std::string::npos)
+      << done.out;
+  const fs::path folder = base_ / "results/tiny", frames = folder / "frames";
+  const Json points = Json::parse(content_of(frames / "tiny.hdf.series"));
+  const Json grid = Json::parse(content_of(frames / "tiny_grid.hdf.series"));
+  ASSERT_EQ(grid.at("files").size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_EQ(grid.at("files").at(k).at("time"), points.at("files").at(k).at("time"));
+  const Json manifest = Json::parse(content_of(folder / "manifest.json"));
+  for (const char* const name : {"frames/tiny_grid_00002.hdf", "frames/tiny_grid.hdf.series"})
+    EXPECT_NE(manifest.at("files").find(name), nullptr) << name;
+  // the page shows the points
+  const Outcome page = run({"report", "results/tiny"});
+  EXPECT_EQ(page.exit, 0) << page.err;
+
+  // a later run of the same name takes them away, and one without frames cannot have them
+  ASSERT_EQ(with({"--set", "output.frame_interval=0.005"}).exit, 0);
+  EXPECT_TRUE(fs::exists(frames / "tiny_00002.hdf"));
+  EXPECT_FALSE(fs::exists(frames / "tiny_grid_00002.hdf"));
+  EXPECT_FALSE(fs::exists(frames / "tiny_grid.hdf.series"));
+  const Outcome none =
+      with({"--set", "output.frame_interval=0", "--set", "output.grid_frames=true"});
+  EXPECT_EQ(none.exit, 2);
+  EXPECT_NE(none.err.find("only a run with frames (output.frame_interval)"), std::string::npos)
+      << none.err;
 }
 
 TEST_F(CommandTest, QuietAndJson) {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Clay with rows and frames: everything that is carried over.
+/// Clay with rows and frames, of the grid as well: everything that is carried over.
 const std::string scene = R"([scene]
 name = "killed"
 end_time = 0.8
@@ -45,6 +45,7 @@ h = 0.025
 [output]
 series_interval = 0.01
 frame_interval = 0.1
+grid_frames = true
 checkpoint_interval = 0.02
 )";
 
@@ -96,6 +97,8 @@ TEST(Killed, AtAnyMomentAndResumedGivesTheSameBytes) {
   const auto straight = result_of(folder / "straight");
   EXPECT_TRUE(straight.contains("series.csv"));
   EXPECT_TRUE(straight.contains("frames/killed_00008.hdf"));
+  EXPECT_TRUE(straight.contains("frames/killed_grid_00008.hdf"));
+  EXPECT_TRUE(straight.contains("frames/killed_grid.hdf.series"));
 
   const char* const asked = std::getenv("REPOSE_KILLS");
   const int kills = asked != nullptr ? std::atoi(asked) : 12;

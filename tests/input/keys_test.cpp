@@ -74,7 +74,7 @@ std::vector<std::string> scenes() {
   const std::string grid =
       "[grid]\nh = 0.025\npoints_per_cell = 4\nkernel = \"quadratic\"\n"
       "[output]\nframe_interval = 0.1\nseries_interval = 0.05\ncheckpoint_interval = "
-      "30.0\nshear_strain = true\n"
+      "30.0\nshear_strain = true\ngrid_frames = true\n"
       "colour = \"density\"\n";
   const std::string disc = "shape = \"disc\"\ncentre = [0.3, 0.3]\nradius = 0.1\nhole = 0.025\n";
   const std::string cylinder =

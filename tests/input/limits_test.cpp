@@ -153,6 +153,16 @@ TEST(Limits, NeedsAreCountedBeforeAnythingIsLaidOut) {
   }
 }
 
+TEST(Limits, FramesOfTheGridAreOfTheWholeBox) {
+  const mpm::Scene without = scene_with({"output.frame_interval=0.1"});
+  const mpm::Scene with = scene_with({"output.frame_interval=0.1", "output.grid_frames=true"});
+  const mpm::Needs needs = mpm::needs_of(with);
+  // mass and velocity of every node, at the least
+  EXPECT_GE(needs.grid_frames_MB, needs.box_cells * 3 * sizeof(double) / 1e6);
+  EXPECT_DOUBLE_EQ(needs.memory_MB - needs.grid_frames_MB, mpm::needs_of(without).memory_MB);
+  EXPECT_EQ(mpm::needs_of(without).grid_frames_MB, 0.0);
+}
+
 TEST(Limits, ASceneThatTheMachineCannotHoldIsRefused) {
   const mpm::Scene given = scene_with({});
   EXPECT_NO_THROW(mpm::require_memory(given, mpm::needs_of(given).memory_MB));

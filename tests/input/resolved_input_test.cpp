@@ -37,6 +37,7 @@ void expect_same(const SceneFile& a, const SceneFile& b) {
   EXPECT_EQ(s.courant, t.courant);
   EXPECT_EQ(s.dt, t.dt);
   EXPECT_EQ(s.frame_interval, t.frame_interval);
+  EXPECT_EQ(s.grid_frames, t.grid_frames);
   EXPECT_EQ(s.series_interval, t.series_interval);
   ASSERT_EQ(s.bodies.size(), t.bodies.size());
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {

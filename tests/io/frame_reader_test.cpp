@@ -67,6 +67,16 @@ TEST_F(FrameReaderTest, TheSeriesNamesItsFrames) {
   EXPECT_EQ(frames[0].time_s, 0.0);
 }
 
+TEST_F(FrameReaderTest, TheSeriesOfPointsIsToldFromThatOfTheGrid) {
+  EXPECT_EQ(point_series_in(folder_), fs::path());
+  EXPECT_EQ(point_series_in(folder_ / "none"), fs::path());
+  // of a scene that is itself called after a grid
+  const std::string name = "sand_grid";
+  std::ofstream(folder_ / (grid_series_name(name) + ".hdf.series")) << "{}";
+  std::ofstream(folder_ / (name + ".hdf.series")) << "{}";
+  EXPECT_EQ(point_series_in(folder_), folder_ / "sand_grid.hdf.series");
+}
+
 std::string reason(const std::function<void()>& read) {
   try {
     read();

@@ -10,6 +10,7 @@
 #include <hdf5.h>
 #include <unistd.h>
 
+#include "io/frame_reader.hpp"
 #include "io/json.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -165,6 +166,110 @@ TEST_F(FrameWriterTest, AttributesAreThoseOfVersionOne) {
   H5Aclose(type);
   H5Aclose(version);
   H5Fclose(file);
+}
+
+/// An attribute's numbers.
+std::vector<double> attribute(const fs::path& path, const char* name) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t set = H5Aopen_by_name(file, "/VTKHDF", name, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t space = H5Aget_space(set);
+  std::vector<double> numbers(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  H5Aread(set, H5T_NATIVE_DOUBLE, numbers.data());
+  H5Sclose(space);
+  H5Aclose(set);
+  H5Fclose(file);
+  return numbers;
+}
+
+std::string type_in(const fs::path& path) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t type = H5Aopen_by_name(file, "/VTKHDF", "Type", H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t kind = H5Aget_type(type);
+  std::string text(H5Tget_size(kind), '\0');
+  H5Aread(type, kind, text.data());
+  H5Tclose(kind);
+  H5Aclose(type);
+  H5Fclose(file);
+  return text;
+}
+
+/// 4 by 3 by 2 nodes, or a plane of 4 by 3, with numbers that tell their node.
+struct SampleGrid {
+  std::array<std::size_t, 3> nodes;
+  std::vector<double> mass, vx, vy, vz;
+
+  explicit SampleGrid(std::size_t layers) : nodes{4, 3, layers} {
+    for (std::size_t n = 0; n < 12 * layers; ++n) {
+      mass.push_back(0.1 * static_cast<double>(n));
+      vx.push_back(100.0 + mass.back());
+      vy.push_back(200.0 + mass.back());
+      if (layers > 1) vz.push_back(300.0 + mass.back());
+    }
+  }
+  GridView view(double time_s) const {
+    return {time_s, 0.25, nodes, {{"mass_kg", mass}}, {{"velocity_m_per_s", vx, vy, vz}}};
+  }
+};
+
+TEST_F(FrameWriterTest, AGridIsAnImageInTheLayoutThatParaViewReads) {
+  for (const std::size_t layers : {1, 2}) {
+    const SampleGrid sample(layers);
+    FrameWriter writer(folder_ / std::to_string(layers), "heap_grid");
+    const fs::path path = writer.write(sample.view(0.75));
+    EXPECT_EQ(path.filename(), "heap_grid_00000.hdf");
+    EXPECT_EQ(type_in(path), "ImageData");
+    EXPECT_EQ(attribute(path, "Version"), (std::vector<double>{1, 0}));
+    EXPECT_EQ(attribute(path, "WholeExtent"),
+              (layers == 1 ? std::vector<double>{0, 0, 0, 3, 0, 2}
+                           : std::vector<double>{0, 3, 0, 2, 0, 1}));
+    EXPECT_EQ(attribute(path, "Origin"), (std::vector<double>{0, 0, 0}));
+    EXPECT_EQ(attribute(path, "Spacing"), (std::vector<double>{0.25, 0.25, 0.25}));
+    // in the plane the image's axes are z, x and y: x = j, y = k, z = i
+    EXPECT_EQ(attribute(path, "Direction"),
+              (layers == 1 ? std::vector<double>{0, 1, 0, 0, 0, 1, 1, 0, 0}
+                           : std::vector<double>{1, 0, 0, 0, 1, 0, 0, 0, 1}));
+    const Dataset mass = read(path, "/VTKHDF/PointData/mass_kg");
+    const Dataset velocity = read(path, "/VTKHDF/PointData/velocity_m_per_s");
+    std::vector<hsize_t> shape{3, 4, 1};
+    if (layers > 1) shape = {layers, 3, 4};
+    EXPECT_EQ(mass.shape, shape);
+    shape.push_back(3);
+    EXPECT_EQ(velocity.shape, shape);
+    EXPECT_EQ(mass.values, sample.mass);
+    for (std::size_t n = 0; n < sample.mass.size(); ++n) {
+      EXPECT_EQ(velocity.values[3 * n], sample.vx[n]);
+      EXPECT_EQ(velocity.values[3 * n + 1], sample.vy[n]);
+      EXPECT_EQ(velocity.values[3 * n + 2], layers > 1 ? sample.vz[n] : 0.0);
+    }
+    // it has no points, and says so to what reads points
+    EXPECT_THROW(read_frame(path), IoError);
+  }
+}
+
+TEST_F(FrameWriterTest, RefusesGridsThatDoNotFit) {
+  const SampleGrid sample(2);
+  FrameWriter writer(folder_, "heap_grid");
+  const auto refused = [&](const GridView& grid) -> std::string {
+    try {
+      writer.write(grid);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  GridView grid = sample.view(0.0);
+  grid.nodes[2] = 3;
+  EXPECT_EQ(refused(grid), "frame: mass_kg has 24 values for 36 nodes");
+  grid.nodes[2] = 0;
+  EXPECT_EQ(refused(grid), "frame: its grid has no nodes");
+  grid = sample.view(0.0);
+  grid.h_m = 0.0;
+  EXPECT_NE(refused(grid), "");
+  grid = sample.view(0.0);
+  grid.vectors[0].name = "mass_kg";
+  EXPECT_EQ(refused(grid), "frame: two fields are called 'mass_kg'");
+  EXPECT_NE(refused(sample.view(std::nan(""))), "");
+  EXPECT_TRUE(fs::is_empty(folder_));
 }
 
 TEST_F(FrameWriterTest, SeriesFollowsEveryFrame) {

@@ -29,6 +29,44 @@ def require(holds, what):
         sys.exit(f"{result}: {what}")
 
 
+def opened(series, rows):
+    source = simple.OpenDataFile(series)
+    times = list(source.TimestepValues)
+    require(numpy.allclose(times, [row["time_s"] for row in rows], rtol=0.0, atol=1e-12), f"times {times}")
+    return source
+
+
+def open_grid(series, rows, summary, in_space):
+    """The frames of the grid: an image of the box whose nodes hold the mass and momentum of the points."""
+    source = opened(series, rows)
+    h, size = summary["input"]["grid"]["h"], summary["input"]["domain"]["size"]
+    nodes = [round(length / h) + 1 for length in size]
+    nodes = nodes if in_space else [1, *nodes]  # in the plane the image's axes are z, x, y
+    mass_name, row_name = ("mass_kg", "mass_kg") if in_space else ("mass_kg_per_m", "mass_kg_per_m")
+    for row in rows:
+        source.UpdatePipeline(row["time_s"])
+        image = simple.servermanager.Fetch(source)
+        require(image.IsA("vtkImageData"), f"the grid is a {image.GetClassName()}")
+        require(list(image.GetDimensions()) == nodes, f"{image.GetDimensions()} nodes, not {nodes}")
+        require(image.GetOrigin() == (0.0, 0.0, 0.0) and image.GetSpacing() == (h, h, h), "where the grid lies")
+        data = image.GetPointData()
+        fields = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+        shapes = {name: field.shape[1:] for name, field in fields.items()}
+        require(shapes == {mass_name: (), "velocity_m_per_s": (3,)}, f"fields of the grid {shapes}")
+        mass, velocity = fields[mass_name], fields["velocity_m_per_s"]
+        require(numpy.all(velocity[mass == 0.0] == 0.0), "velocity without mass")
+        if row["time_s"] == 0.0:
+            require(not mass.any(), "mass before the first step")
+            continue
+        # sums of fewer than 2e5 positive terms each, in another order
+        require(abs(mass.sum() / row[row_name] - 1.0) <= 2e5 * 2.0**-52, f"mass {mass.sum()}")
+        # x runs fastest: what has mass lies in front of the front, within the two cells of a node's reach
+        places = numpy.array([image.GetPoint(i) for i in numpy.flatnonzero(mass)])
+        far = numpy.hypot(places[:, 0], places[:, 2]) if in_space else places[:, 0]
+        reach = 2.0 * h * (numpy.sqrt(2.0) if in_space else 1.0)
+        require(0.0 <= row["front_max_m"] + reach - far.max() <= 2.0 * reach, f"grid up to {far.max()}")
+
+
 for result in sys.argv[1:]:
     kind = os.path.basename(result)
     with open(os.path.join(result, "series.csv"), encoding="utf-8") as file:
@@ -36,11 +74,11 @@ for result in sys.argv[1:]:
     with open(os.path.join(result, "summary.json"), encoding="utf-8") as file:
         summary = json.load(file)
     frames = os.path.join(result, "frames")
-    series = [name for name in os.listdir(frames) if name.endswith(".hdf.series")]
-    require(len(series) == 1, f"has {len(series)} series")
-    source = simple.OpenDataFile(os.path.join(frames, series[0]))
+    series = sorted(name for name in os.listdir(frames) if name.endswith(".hdf.series"))
+    name = summary["name"]
+    require(series == [f"{name}.hdf.series", f"{name}_grid.hdf.series"], f"has the series {series}")
+    source = opened(os.path.join(frames, series[0]), rows)
     times = list(source.TimestepValues)
-    require(numpy.allclose(times, [row["time_s"] for row in rows], rtol=0.0, atol=1e-12), f"times {times}")
     for time, row in zip(times, rows):
         source.UpdatePipeline(time)
         data = dataset_adapter.WrapDataObject(simple.servermanager.Fetch(source))
@@ -69,4 +107,5 @@ for result in sys.argv[1:]:
         axes = [0, 1, 2] if trace.shape[1] == 6 else [0, 4, 8]
         p = trace[:, axes].mean(axis=1)
         require(numpy.abs(p - fields["pressure_Pa"]).max() <= 1e-12 * numpy.abs(trace).max(), f"p at {time}")
+    open_grid(os.path.join(frames, series[1]), rows, summary, kind == "space")
     print(f"{kind}: {len(times)} frames, {len(places)} points, {len(fields)} fields")
