@@ -1,10 +1,10 @@
 """What stepping a scene from Python costs in instructions, which do not depend on what else the machine does.
 
-    PYTHONPATH=build/release/python python3 python/tools/instructions.py build/release/bin/repose
+    PYTHONPATH=build/release/python python3 python/tools/instructions.py build/release/bin/repose [H]
 
 Counts by valgrind (cachegrind) the instructions of `repose run` and of a script that steps the same scene from row
 to row of its series, one thread, no frames, no picture; from each is taken what the same takes for a single step. Valgrind
-shows programs no AVX-512, so both use the AVX2 of repose.
+knows no AVX-512: a build for this has -DREPOSE_MARCH=x86-64-v3 -DREPOSE_NATIVE=OFF.
 """
 
 import re
@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-SCENE = {"grid.h": 0.025, "output.frame_interval": 0.0, "output.series_interval": 0.005, "output.checkpoint_interval": 0.0}
+SCENE = {"grid.h": float(sys.argv[2]) if len(sys.argv) > 2 else 0.025, "output.frame_interval": 0.0, "output.series_interval": 0.005, "output.checkpoint_interval": 0.0}
 END, ONE_STEP = 0.2, 1e-6
 SCRIPT = """
 import sys, repose
