@@ -35,6 +35,7 @@ set(repose_public_headers
   mpm/output/rest_pressure.hpp
   mpm/scene/prescribed.hpp
   mpm/scene/scene.hpp
+  mpm/scene/solid.hpp
   mpm/step/simulation.hpp
   mpm/study/estimate.hpp
   mpm/study/ill_posed_points.hpp

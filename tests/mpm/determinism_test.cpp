@@ -40,7 +40,7 @@ Scene everything(Kernel kernel) {
   scene.bodies.push_back(both);
   scene.bodies[0].restitution = 0.5;
   scene.bodies[2].velocity[0] = 6.0;  // leaves at once
-  Surface roller, gate;  // at rest and in motion
+  Surface roller, gate;               // at rest and in motion
   roller.solid.shape = Ball{{0.65, 0.2, 0.0}, 0.04};
   roller.contact = Surface::Contact::friction;
   roller.friction = 0.3;
