@@ -124,6 +124,11 @@ class Keys {
     x.clear();
     for (const std::size_t k : positions) x.push_back(static_cast<Enum>(k));
   }
+  /// [x, y] in the plane, [x, y, z] in space; either where the keys are described.
+  void place(const Key& key, std::size_t axes, std::array<double, 3>& x) {
+    vector(key, axes, x);
+    if (describes()) vector(key, 3, x);
+  }
   /// [x, y] where there are never three axes.
   void pair(const Key& key, std::array<double, 2>& x) {
     std::array<double, 3> wide{x[0], x[1], 0.0};

@@ -11,6 +11,7 @@
 #include "input/read_initial.hpp"
 #include "input/read_keys.hpp"
 #include "input/read_law.hpp"
+#include "input/read_surface.hpp"
 #include "input/toml_text.hpp"
 #include "umat/in/library_law.hpp"
 
@@ -124,12 +125,6 @@ void wall_key(Keys& keys, std::string_view name, std::string_view doc, Wall& wal
       [&] { return wall_text(wall); }, wall_info());
 }
 
-/// [x, y], in space [x, y, z]; either where the keys are described.
-void place_key(Keys& keys, const Key& key, std::size_t axes, std::array<double, 3>& x) {
-  keys.vector(key, axes, x);
-  if (keys.describes()) keys.vector(key, 3, x);
-}
-
 void domain_keys(Keys& keys, mpm::Scene& scene) {
   std::size_t axes = scene.dimensions();
   if (const TomlReader* const table = keys.reader()) {
@@ -138,7 +133,7 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
   }
   const Key size{"size", "m", "width and height of the box, in space also its depth", positive,
                  required};
-  place_key(keys, size, axes, scene.domain);
+  keys.place(size, axes, scene.domain);
   if (std::isnan(scene.domain[2])) scene.domain[2] = 1.0;  // reported; still a scene in space
   wall_key(keys, "floor", "lower edge", scene.floor);
   keys.value(
@@ -189,54 +184,6 @@ void disc_keys(Keys& keys, mpm::Body& body, bool is_disc, bool space) {
     set_disc(body, disc);
 }
 
-/// [[x, y], …], three corners at least.
-void corners_key(Keys& keys, const Key& key, mpm::Polygon& polygon) {
-  const std::string_view name = key.name;
-  if (!key.applies && keys.reader() == nullptr && !keys.describes()) return;
-  if (TomlReader* const table = keys.reader(); table != nullptr && !key.applies) {
-    if (table->has(name)) {
-      table->expect(name);
-      table->report(name, key.only);
-    }
-    return;
-  }
-  KeyInfo info;
-  info.kind = ValueKind::corner_list;
-  info.least = 3;
-  keys.value(
-      key,
-      [&](TomlReader& table) {
-        polygon.corners.clear();
-        const toml::array* const list = table.get(name)->as_array();
-        bool sound = list != nullptr && list->size() >= 3;
-        for (std::size_t i = 0; sound && i < list->size(); ++i) {
-          const toml::array* const pair = list->get_as<toml::array>(i);
-          sound = pair != nullptr && pair->size() == 2;
-          std::array<double, 2> corner{};
-          for (std::size_t k = 0; sound && k < 2; ++k) {
-            const auto x = pair->get(k)->value<double>();
-            sound = x.has_value() && pair->get(k)->is_number() && std::isfinite(*x);
-            corner[k] = x.value_or(0.0);
-          }
-          polygon.corners.push_back(corner);
-        }
-        if (!sound) {
-          polygon.corners = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};  // reported
-          table.report(name, fmt::format("{} must be a list of three or more corners, each [x, y] "
-                                         "in metres: [[0, 0], [1, 0], [0, 1]]",
-                                         table.path_of(name)));
-        }
-      },
-      [&] {
-        std::string text = "[";
-        for (const auto& [x, y] : polygon.corners)
-          text += fmt::format("{}[{}, {}]", text.size() > 1 ? ", " : "", toml_number(x),
-                              toml_number(y));
-        return text + "]";
-      },
-      info);
-}
-
 void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
   static constexpr std::array<std::string_view, 2> in_space{"box", "cylinder"};
   static constexpr std::array<std::string_view, 3> in_plane{"box", "disc", "polygon"};
@@ -250,11 +197,9 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
                              : std::span<const std::string_view>(in_plane),
             shape);
   constexpr std::string_view box_only = "origin and size belong to a box";
-  place_key(keys,
-            Key{"origin", "m", "lower left corner of a box (0)"}.only_if(shape == 0, box_only),
-            axes, body.origin);
-  place_key(
-      keys,
+  keys.place(Key{"origin", "m", "lower left corner of a box (0)"}.only_if(shape == 0, box_only),
+             axes, body.origin);
+  keys.place(
       Key{"size", "m", "width, height and in space depth of a box", positive, required}.only_if(
           shape == 0, box_only),
       axes, body.size);
@@ -267,7 +212,7 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
   // without its corners, which is reported, it has no box to be set
   if (keys.reader() != nullptr && shape == 2 && polygon.corners.size() > 2)
     set_polygon(body, polygon);
-  place_key(keys, {"velocity", "m/s", "at the start"}, axes, body.velocity);
+  keys.place({"velocity", "m/s", "at the start"}, axes, body.velocity);
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
   keys.number(
       {"restitution", "-",
@@ -283,102 +228,6 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
        {},
        required},
       [&](Keys& below) { law_keys(below, body.law); });
-}
-
-constexpr std::array<std::string_view, 2> contact_words{"no_slip", "slip"};
-
-void contact_key(Keys& keys, mpm::Surface& surface) {
-  using Contact = mpm::Surface::Contact;
-  static const KeyInfo info = [] {
-    KeyInfo any, word, friction;
-    any.kind = ValueKind::any_of;
-    word.kind = ValueKind::word;
-    word.words.assign(contact_words.begin(), contact_words.end());
-    friction.kind = ValueKind::table;
-    double x = 0.0;
-    friction.below = describe_keys([&](Keys& below) { friction_key(below, x); });
-    any.below = {word, friction};
-    return any;
-  }();
-  keys.value(
-      {"contact", "-", "of the material with the surface"},
-      [&](TomlReader& table) {
-        const toml::node& node = *table.get("contact");
-        if (node.is_table()) {
-          const TomlReader given = table.table("contact");
-          ReadKeys below(given);
-          surface.contact = Contact::friction;
-          friction_key(below, surface.friction);
-        } else if (!node.is_string() || node.value_or(std::string()) == "friction") {
-          table.report("contact", fmt::format("{} must be \"no_slip\", \"slip\" or a table such as "
-                                              "{{ friction = 0.4 }}; got {}",
-                                              table.path_of("contact"), describe(node)));
-        } else {
-          surface.contact = static_cast<Contact>(
-              table.choice("contact", {contact_words.begin(), contact_words.end()}, 0));
-        }
-      },
-      [&] {
-        return surface.contact == Contact::friction
-                   ? fmt::format("{{ friction = {} }}", toml_number(surface.friction))
-                   : toml_string(contact_words[static_cast<std::size_t>(surface.contact)]);
-      },
-      info);
-}
-
-void surface_keys(Keys& keys, mpm::Surface& surface, std::size_t axes) {
-  static constexpr std::array<std::string_view, 3> shapes{"half_space", "ball", "polygon"};
-  keys.text({"name", "-", "for messages"}, surface.name);
-  std::size_t shape = surface.solid.shape.index();
-  keys.word({"shape", "-",
-             "of the rigid region: all behind a plane (in the plane, a line); a sphere (a disc); a "
-             "polygon, in space a prism along z without end"},
-            shapes, shape);
-  const bool reads = keys.reader() != nullptr;
-  if (reads && shape == 1 && surface.solid.shape.index() != 1) surface.solid.shape = mpm::Ball{};
-  if (reads && shape == 2 && surface.solid.shape.index() != 2) surface.solid.shape = mpm::Polygon{};
-  const auto of = [&]<class Shape>(Shape fallback) {
-    const Shape* const held = std::get_if<Shape>(&surface.solid.shape);
-    return held != nullptr ? *held : fallback;
-  };
-  auto plane = of(mpm::HalfSpace{});
-  auto ball = of(mpm::Ball{});
-  auto polygon = of(mpm::Polygon{});
-  constexpr std::string_view plane_only = "point and normal belong to shape = \"half_space\"",
-                             ball_only = "centre and radius belong to shape = \"ball\"",
-                             polygon_only = "corners belong to shape = \"polygon\"";
-  place_key(keys, Key{"point", "m", "on the plane", {}, required}.only_if(shape == 0, plane_only),
-            axes, plane.point);
-  place_key(
-      keys,
-      Key{"normal", "-", "of the plane, towards the material; of any length", {}, required}.only_if(
-          shape == 0, plane_only),
-      axes, plane.normal);
-  place_key(keys, Key{"centre", "m", "of the ball", {}, required}.only_if(shape == 1, ball_only),
-            axes, ball.centre);
-  keys.number(Key{"radius", "m", "of the ball", positive, required}.only_if(shape == 1, ball_only),
-              ball.radius);
-  corners_key(keys,
-              Key{"corners", "m", "of the polygon, in order: [[x, y], …]", {}, required}.only_if(
-                  shape == 2, polygon_only),
-              polygon);
-  keys.boolean({"hollow", "-", "rigid is what lies outside: a drum"}, surface.solid.hollow);
-  contact_key(keys, surface);
-  place_key(keys, {"velocity", "m/s", "of the surface"}, axes, surface.velocity);
-  keys.number({"spin", "rad/s", "of the surface about z, through its pivot"}, surface.spin);
-  keys.pair({"pivot", "m", "x and y at the start; it moves along"}, surface.pivot);
-  keys.number({"starts", "s", "when it begins to move", not_negative}, surface.starts);
-  std::optional<double> stops;
-  if (surface.stops < HUGE_VAL) stops = surface.stops;
-  keys.number({"stops", "s", "when it comes to rest; without it, never", not_negative}, stops);
-  surface.stops = stops.value_or(HUGE_VAL);
-  if (!reads) return;
-  if (shape == 0)
-    surface.solid.shape = plane;
-  else if (shape == 1)
-    surface.solid.shape = ball;
-  else
-    surface.solid.shape = polygon;
 }
 
 void grid_keys(Keys& keys, mpm::Scene& scene) {

@@ -56,6 +56,13 @@ typename GridOf<dim>::Index node_index(const NodeBlockOf<dim>& block, int n) {
   return index;
 }
 
+template <int dim>
+Position position_of(const typename GridOf<dim>::Index& node, double h) {
+  Position x{};
+  for (std::size_t i = 0; i < dim; ++i) x[i] = h * node[i];
+  return x;
+}
+
 /// What contact is to take of one velocity: odd and even (rigid_contact.hpp).
 template <int dim>
 struct Lacks {
@@ -103,7 +110,7 @@ struct Corner {
 template <int dim>
 using Corners = std::array<Corner<dim>, std::size_t{1} << dim>;
 template <int dim>
-Corners<dim> corners_around(const Vector<dim>& x, const Nearest& at, double d, double h) {
+Corners<dim> corners_around(const Position& x, const Nearest& at, double d, double h) {
   typename GridOf<dim>::Index cell;
   Vector<dim> part;
   for (std::size_t i = 0; i < dim; ++i) {
@@ -150,6 +157,9 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
   double radius2 = 0.0;  // of a block of nodes
   for (const int cells : Shape<dim>::cells) radius2 += 0.25 * cells * cells;
   const double radius = h * std::sqrt(radius2);
+  const auto in_front = [&](const typename GridOf<dim>::Index& index) {
+    return surface.nearest_at(time, position_of<dim>(index, h)).distance > bound * h;
+  };
   std::unordered_map<std::int64_t, std::int32_t> known;
   const auto donor = [&](const typename GridOf<dim>::Index& index) -> std::int32_t {
     for (std::size_t i = 0; i < dim; ++i)  // beyond, no point of the box reaches
@@ -160,23 +170,14 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
     const auto place = static_cast<std::int32_t>(at.place);
     const auto [found, is_new] =
         known.try_emplace(std::int64_t{block} * Shape<dim>::nodes + place, -1);
-    if (is_new) {
-      Vector<dim> x;
-      for (std::size_t i = 0; i < dim; ++i) x[i] = h * index[i];
-      if (surface.nearest_at(time, position_of<dim>(x)).distance > bound * h) {
-        found->second = static_cast<std::int32_t>(layer.donors.size());
-        Donor& made = layer.donors.emplace_back();
-        made.block = block;
-        made.place = place;
-        made.velocity = along_axes<dim>(surface.velocity_at(time, position_of<dim>(x)));
-      }
+    if (is_new && in_front(index)) {
+      found->second = static_cast<std::int32_t>(layer.donors.size());
+      Donor& made = layer.donors.emplace_back();
+      made.block = block;
+      made.place = place;
+      made.velocity = along_axes<dim>(surface.velocity_at(time, position_of<dim>(index, h)));
     }
     return found->second;
-  };
-  const auto in_front = [&](const typename GridOf<dim>::Index& index) {
-    Vector<dim> x;
-    for (std::size_t i = 0; i < dim; ++i) x[i] = h * index[i];
-    return surface.nearest_at(time, position_of<dim>(x)).distance > bound * h;
   };
   for (std::size_t b = 0; b < grid.node_blocks.size(); ++b) {
     const NodeBlockOf<dim>& nb = grid.node_blocks[b];
@@ -186,16 +187,14 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
     const double middle = surface.nearest_at(time, centre).distance;
     if (middle > radius + bound * h || middle < -radius - reach<dim> * h) continue;
     for (int n = 0; n < Shape<dim>::nodes; ++n) {
-      const typename GridOf<dim>::Index index = node_index<dim>(nb, n);
-      Vector<dim> x;
-      for (std::size_t i = 0; i < dim; ++i) x[i] = h * index[i];
-      const Nearest at = surface.nearest_at(time, position_of<dim>(x));
+      const Position x = position_of<dim>(node_index<dim>(nb, n), h);
+      const Nearest at = surface.nearest_at(time, x);
       if (at.distance > bound * h || at.distance < -reach<dim> * h) continue;
       Ghost ghost{};
       ghost.block = static_cast<std::int32_t>(b);
       ghost.place = n;
       ghost.normal = along_axes<dim>(at.normal);
-      ghost.velocity = along_axes<dim>(surface.velocity_at(time, position_of<dim>(x)));
+      ghost.velocity = along_axes<dim>(surface.velocity_at(time, x));
       // d: as far in front as the node lies behind, or so far that all donors are free
       const double farthest = bound + std::sqrt(static_cast<double>(dim));
       double d = std::max(-at.distance / h, bound);

@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "mpm/scene/restitution.hpp"
 
 namespace repose::mpm {
@@ -91,6 +93,10 @@ class Load {
         return at >= other.origin[axis] && at < other.origin[axis] + other.size[axis];
       };
       if (&other == &body_ || std::abs(other.origin[1] - height) > gap_ || !spans(0, x)) continue;
+      if (other.polygon)
+        throw InputError("lithostatic", fmt::format("body[{}], which stands on this one, is a "
+                                                    "polygon: its weight upon a place is not known",
+                                                    i));
       if (scene_.dimensions() == 2 && other.disc) continue;  // it touches in a point
       if (scene_.dimensions() == 3 && !spans(2, z)) continue;
       if (other.disc) {
@@ -259,8 +265,13 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
                     first_id + static_cast<std::int64_t>(points.count));
       }
   }
+  if (points.count == 0)
+    throw InputError(body.polygon ? "corners"
+                     : body.disc  ? "centre"
+                                  : "origin",
+                     "all of the body lies within rigid surfaces: it has no points");
   // solid depths are measured at the loosest density the law knows by name, else as filled
-  points.rho_0 = points.count == 0 ? 0.0 : points[F::rho][points.count - 1];
+  points.rho_0 = points[F::rho][points.count - 1];
   for (std::size_t k = 0; k < points.material->law().parameters.size(); ++k)
     if (points.material->law().parameters[k].name == "rho_0")
       points.rho_0 = points.material->theta()[k];

@@ -341,6 +341,14 @@ void check_surfaces(const Scene& scene) {
         throw InputError(path + "normal", "a normal of length 0 has no direction");
     if (const auto* const polygon = std::get_if<Polygon>(&surface.solid.shape))
       check_polygon(*polygon, path + "corners");
+    if (const auto* const ball = std::get_if<Ball>(&surface.solid.shape))
+      require(ball->radius, positive, (path + "radius").c_str(), "radius");
+    if (surface.contact == Surface::Contact::friction)
+      require(surface.friction, not_negative, (path + "friction").c_str(), "friction");
+    for (const double x : {surface.velocity[0], surface.velocity[1], surface.velocity[2],
+                           surface.spin, surface.pivot[0], surface.pivot[1]})
+      require(x, {}, (path + "velocity").c_str(), "velocity, spin or pivot");
+    require(surface.starts, not_negative, (path + "starts").c_str(), "starts");
     if (surface.stops < surface.starts)
       throw InputError(path + "stops", "it would come to rest at " + number(surface.stops) +
                                            " s, before it begins to move at " +
@@ -363,6 +371,8 @@ void check_polygons(const Scene& scene) {
     const Body& body = scene.bodies[i];
     if (!body.polygon) continue;
     check_polygon(*body.polygon, path_of(i, "corners"));
+    if (scene.dimensions() == 3)
+      throw InputError(path_of(i, "corners"), "a polygon is a body of the plane");
     if (body.lithostatic)
       throw InputError(path_of(i, "initial.lithostatic"),
                        "only a box can be lithostatic: a polygon has no level surface");

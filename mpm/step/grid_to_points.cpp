@@ -128,12 +128,9 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
   const Pack step(dt), low(hair);
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const std::size_t s = range.begin + k;
-    auto near_wall = low < low;
     for (std::size_t i = 0; i < dim; ++i) {
       double* const x = points.data(Layout<dim>::x + i) + s;
-      const Pack moved = Pack::load_aligned(x) + step * Pack::load_aligned(motion.v[i] + k);
-      moved.store_aligned(x);
-      near_wall = near_wall || moved < low || moved > Pack(end[i] - hair);
+      (Pack::load_aligned(x) + step * Pack::load_aligned(motion.v[i] + k)).store_aligned(x);
     }
     if (near_surface)  // the grid's velocity leads along it to second order in h
       for (std::size_t lane = 0; lane < Pack::size; ++lane) {
@@ -142,6 +139,11 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
         if (contact.keep_out(x, tiles_time, hair))
           for (std::size_t i = 0; i < dim; ++i) points.data(Layout<dim>::x + i)[s + lane] = x[i];
       }
+    auto near_wall = low < low;  // the edges come last: a surface may push a point beyond them
+    for (std::size_t i = 0; i < dim; ++i) {
+      const Pack x = Pack::load_aligned(points.data(Layout<dim>::x + i) + s);
+      near_wall = near_wall || x < low || x > Pack(end[i] - hair);
+    }
     if (!any(near_wall)) continue;
     for (std::size_t lane = 0; lane < Pack::size; ++lane)
       for (std::size_t i = 0; i < dim; ++i)

@@ -38,14 +38,14 @@ class Simulation::Impl {
   // --- the algorithm box, one function per stage ---
   void sort_if_needed();
   double choose_step(double stop_at) const;
-  void points_to_grid();            ///< P2G: mass, momentum, internal force of every block's tile
-  void update_grid(double dt);      ///< sum tiles, accelerate nodes
-  void apply_boundaries();          ///< surfaces, then the edges of the box
-  void measure_signals();           ///< now and then: what the grid sees of them (step_size.hpp)
-  void solve_viscosity(double dt);  ///< implicit viscous forces, if any; throws NumericalFailure
-  void extend_velocity();           ///< XPIC, FMPM beyond first order (extended_pic.cpp)
-  void grid_to_points(double dt);   ///< G2P, move, update stress, P2G of the next step
-  void close_ledger();              ///< kinetic energies before and after; throws NumericalFailure
+  void points_to_grid();             ///< P2G: mass, momentum, internal force of every block's tile
+  void update_grid(double dt);       ///< sum tiles, accelerate nodes
+  void apply_boundaries(double dt);  ///< surfaces, then the edges of the box
+  void measure_signals();            ///< now and then: what the grid sees of them (step_size.hpp)
+  void solve_viscosity(double dt);   ///< implicit viscous forces, if any; throws NumericalFailure
+  void extend_velocity();            ///< XPIC, FMPM beyond first order (extended_pic.cpp)
+  void grid_to_points(double dt);    ///< G2P, move, update stress, P2G of the next step
+  void close_ledger();               ///< kinetic energies before and after; throws NumericalFailure
 
   SeriesRow diagnostics();
   Deposit deposit() const;

@@ -16,7 +16,7 @@ void Simulation::Impl<dim>::step(double stop_at) {
   const double dt = choose_step(stop_at);
   if (!tiles_are_current) points_to_grid();
   update_grid(dt);
-  apply_boundaries();
+  apply_boundaries(dt);
   measure_signals();
   if constexpr (dim == 2) {
     solve_viscosity(dt);
@@ -125,7 +125,7 @@ void Simulation::Impl<dim>::update_grid(double dt) {
 
 /// The edges come last: what they ask for holds exactly.
 template <int dim>
-void Simulation::Impl<dim>::apply_boundaries() {
+void Simulation::Impl<dim>::apply_boundaries(double dt) {
   if constexpr (dim == 2)
     if (walls.periodic()) node_sums_.push_back(join_periodic_edges(grid));
   wall_effect_ = {};
@@ -133,8 +133,7 @@ void Simulation::Impl<dim>::apply_boundaries() {
     const bool sorted = std::exchange(contact_sorts_, sorts) != sorts;
     wall_effect_ += contact.apply(grid, time, sorted, ledger.surface_work);
   }
-  const bool extends = scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm;
-  wall_effect_ += apply_walls(grid, walls, dim == 2 && extends ? &mirrored_ : nullptr);
+  wall_effect_ += apply_walls(grid, walls, retention(dt).extended ? &mirrored_ : nullptr);
 }
 
 template <int dim>

@@ -57,8 +57,9 @@ class FlowReader {
       : flow_(flow),
         scene_(scene),
         body_(scene.bodies.at(0)) {
-    need(scene.dimensions() == 2 && scene.bodies.size() == 1 && !body_.disc,
-         "one box in the plane");
+    need(scene.dimensions() == 2 && scene.bodies.size() == 1 && !body_.disc && !body_.polygon &&
+             scene.surfaces.empty(),
+         "one box in the plane, without surfaces");
     need(scene.left.kind == Wall::Kind::periodic && scene.right.kind == Wall::Kind::periodic,
          "periodic edges left and right");
     need(body_.origin[0] == 0.0 && body_.origin[1] == 0.0 && body_.size[0] == scene.domain[0],

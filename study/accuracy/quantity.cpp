@@ -77,6 +77,12 @@ double disc_left_of(double x, double radius) {
 }
 
 double area_left_of(const mpm::Body& body, double x) {
+  if (body.polygon) {
+    const auto& [left, low, depth] = body.origin;
+    return mpm::piece_of(
+               mpm::clipped(*body.polygon, {left, low}, {std::max(left, x), low + body.size[1]}))
+        .area;
+  }
   if (!body.disc) return body.size[1] * std::clamp(x - body.origin[0], 0.0, body.size[0]);
   const double from_centre = x - body.disc->centre[0];
   return disc_left_of(from_centre, body.disc->radius) - disc_left_of(from_centre, body.disc->hole);
@@ -91,7 +97,8 @@ std::optional<VectorXd> start_of(const SweepRun& run, Quantity q, double bin) {
     if (column == run.series.end() || column->second.empty()) return {};
     return VectorXd::Constant(1, column->second.front());
   }
-  if (q != Quantity::profile || scene.dimensions() == 3) return {};
+  // surfaces cut bodies, by how much nobody says
+  if (q != Quantity::profile || scene.dimensions() == 3 || !scene.surfaces.empty()) return {};
   VectorXd shares = VectorXd::Zero(static_cast<Index>(std::lround(scene.domain[0] / bin)));
   for (const mpm::Body& body : scene.bodies)
     for (Index i = 0; i < shares.size(); ++i)
@@ -114,8 +121,9 @@ QuantityCurve curve_of(const VectorXd& shares, Quantity q, const mpm::Scene& sce
 double length_of(const mpm::Scene& scene) {
   double area = 0.0;
   for (const mpm::Body& body : scene.bodies)
-    area += body.disc ? M_PI * (std::pow(body.disc->radius, 2) - std::pow(body.disc->hole, 2))
-                      : body.size[0] * body.size[1];
+    area += body.polygon ? mpm::piece_of(*body.polygon).area
+            : body.disc  ? M_PI * (std::pow(body.disc->radius, 2) - std::pow(body.disc->hole, 2))
+                         : body.size[0] * body.size[1];
   return std::sqrt(area);
 }
 

@@ -102,9 +102,9 @@ std::vector<std::string> scenes() {
       plane("shape = \"polygon\"\ncorners = [[0.1, 0.2], [0.3, 0.2], [0.2, 0.4]]\n", law,
             grid +
                 "[[surface]]\nname = \"ramp\"\nshape = \"half_space\"\npoint = [0.1, 0.1]\n"
-                "normal = [-0.2, 1.0]\ncontact = { friction = 0.3 }\n"
+                "normal = [-0.2, 1.0]\nfriction = 0.3\n"
                 "[[surface]]\nshape = \"ball\"\ncentre = [0.5, 0.2]\nradius = 0.4\nhollow = true\n"
-                "spin = 1.0\npivot = [0.5, 0.2]\ncontact = \"slip\"\n"
+                "spin = 1.0\npivot = [0.5, 0.2]\nkind = \"slip\"\n"
                 "[[surface]]\nshape = \"polygon\"\ncorners = [[0.6, 0.0], [0.7, 0.0], [0.7, 0.3]]\n"
                 "velocity = [0.1, 0.2]\nstarts = 0.1\nstops = 0.2\n")};
 }

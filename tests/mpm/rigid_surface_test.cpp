@@ -22,10 +22,12 @@ struct Turned {
   double friction;
   double h;
   Transfer transfer = Transfer::relaxed;
+  Kernel kernel = Kernel::cubic;
+  Storage storage = Storage::double_precision;
 };
 void PrintTo(const Turned& t, std::ostream* out) {
-  *out << t.angle << " deg, friction " << t.friction << ", h " << t.h << ", "
-       << name_of(t.transfer);
+  *out << t.angle << " deg, friction " << t.friction << ", h " << t.h << ", " << name_of(t.transfer)
+       << ", " << name_of(t.kernel) << ", " << storage_names[static_cast<std::size_t>(t.storage)];
 }
 
 /// A stiff block on a plane of 45° against gravity, the two turned together against the grid.
@@ -42,6 +44,8 @@ class BlockOnPlaneTest : public testing::TestWithParam<Turned> {
     const auto whole = [&](double x) { return std::ceil(x / t.h) * t.h; };
     Scene scene = empty_box(whole(start[0] + way * along[0] + 1.5), whole(start[1] + 1.5), t.h);
     scene.transfer = t.transfer;
+    scene.kernel = t.kernel;
+    scene.storage = t.storage;
     scene.gravity = g;
     scene.tilt_deg = slope - t.angle;
     Surface plane;
@@ -74,7 +78,9 @@ TEST_P(BlockOnPlaneTest, SlidesAgainstItsFriction) {
   Simulation simulation(scene(45.0), 1);
   const double start = place(simulation);
   const double mass = simulation.diagnostics().mass_kg_per_m;
-  EXPECT_NEAR(mass, 1300.0 * length * height, 1e-12 * mass);
+  // single precision keeps 24 bits of a point's mass
+  const double digits = GetParam().storage == Storage::single_precision ? 6e-8 : 1e-12;
+  EXPECT_NEAR(mass, 1300.0 * length * height, digits * mass);
   const double t = 1.999;
   run_until(simulation, t);
   const double way = place(simulation) - start;
@@ -86,6 +92,9 @@ TEST_P(BlockOnPlaneTest, SlidesAgainstItsFriction) {
       testing::PrintToString(GetParam()).c_str(), way, exact, 100.0 * (way / exact - 1.0),
       row.energy_residual_J_per_m / fall, row.wall_loss_J_per_m / (fall * GetParam().friction));
   EXPECT_NEAR(way, exact, 0.01 * exact);
+  // what is left is the half kick of the moment (ledger.hpp), ½Δt m g sinθ v with v = 2 way/t, and
+  // what is of second order, for which as much is allowed
+  EXPECT_LT(std::abs(row.energy_residual_J_per_m), 2.0 * row.dt_s / t * fall);
 }
 
 std::vector<Turned> planes() {
@@ -95,6 +104,8 @@ std::vector<Turned> planes() {
       for (const double angle : {0.0, 17.0, 45.0, 80.0}) all.push_back({angle, friction, h});
   for (const Transfer transfer : {Transfer::apic, Transfer::flip, Transfer::tpic})
     all.push_back({17.0, 0.5, 0.1, transfer});
+  all.push_back({17.0, 0.5, 0.1, Transfer::relaxed, Kernel::quadratic});
+  all.push_back({45.0, 0.3, 0.1, Transfer::relaxed, Kernel::cubic, Storage::single_precision});
   return all;
 }
 INSTANTIATE_TEST_SUITE_P(Angles, BlockOnPlaneTest, testing::ValuesIn(planes()));
@@ -138,7 +149,8 @@ TEST(RigidSurfaceTest, ABlockSticksBelowItsFriction) {
     run_until(simulation, 2.0);
     std::printf("[ measured ] %.0f deg: landed after %.4f m, then %.2g m in a second\n", angle,
                 landed - start, place() - landed);
-    EXPECT_LT(std::abs(place() - landed), 1e-4) << angle << ": free it would slide 7.5 m";
+    // later bounces together less than a sixtieth of the first; free it would slide 7.5 m
+    EXPECT_LT(std::abs(place() - landed), 1e-4) << angle;
   }
 }
 
@@ -218,7 +230,7 @@ std::array<double, 8> grain_layer_on_plane(double angle, double offset, double& 
 TEST(RigidSurfaceTest, BagnoldFlowOnATurnedPlane) {
   double along_grid = 0.0;
   const std::array<double, 8> straight = grain_layer_on_plane(0.0, 0.0, along_grid);
-  // from 0.9 at the start towards 1: t/(H²/ν) of the slowest mode is 1.2, of e-folds
+  // it started at 0.9: on its way to 1, and not beyond
   EXPECT_GT(along_grid, 0.95);
   EXPECT_LT(along_grid, 1.0);
   for (const auto& [angle, offset] : {std::pair{23.0, 0.0}, {0.0, 0.75}}) {
@@ -231,6 +243,74 @@ TEST(RigidSurfaceTest, BagnoldFlowOnATurnedPlane) {
         "speed; mean over exact %.4f, along the grid %.4f\n",
         angle, offset, 100.0 * largest / straight[7], of_exact, along_grid);
     EXPECT_LT(largest, 0.02 * straight[7]) << angle << " " << offset;
+  }
+}
+
+// Columns of every law collapse on a plane between the nodes as on the edge of the box: their
+// fronts differ by less than a cell, which is what either can tell.
+TEST(RigidSurfaceTest, EveryLawCollapsesAsOnAnEdge) {
+  const LawSpec laws[] = {mu_i(254800.0), cam_clay(), critical_state(),
+                          newtonian(1.0, 26000.0, 1.0, 1300.0)};
+  for (const LawSpec& law : laws)
+    for (const Kernel kernel : {Kernel::cubic, Kernel::quadratic}) {
+      std::array<SeriesRow, 2> end;
+      for (const bool edge : {false, true}) {
+        Scene scene = column_collapse(law);
+        scene.transfer = Transfer::relaxed;
+        scene.kernel = kernel;
+        if (!edge) {
+          const double base = 3.4 * scene.h;
+          scene.bodies[0].origin[1] = base;
+          Surface plane;
+          plane.solid.shape = HalfSpace{{0.0, base, 0.0}, {0.0, 1.0, 0.0}};
+          scene.surfaces = {plane};
+        }
+        Simulation simulation(scene, 1);
+        run_until(simulation, 0.4);
+        end[edge ? 1 : 0] = simulation.diagnostics();
+      }
+      std::printf("[ measured ] %s, %s: front %.4f m, on the edge %.4f, h = 0.0125\n",
+                  law.name.c_str(), name_of(kernel).data(), end[0].front_99_m, end[1].front_99_m);
+      EXPECT_NEAR(end[0].front_99_m, end[1].front_99_m, 0.0125);
+      EXPECT_NEAR(end[0].mass_kg_per_m, end[1].mass_kg_per_m, 1e-12 * end[1].mass_kg_per_m);
+    }
+}
+
+// A plough that scrapes along the wall pushes grains against it: whatever the surface does, the
+// edges of the box have the last word, and no point leaves.
+TEST(RigidSurfaceTest, NoPointIsPushedThroughAnEdge) {
+  Scene scene = empty_box(0.4, 0.4, 0.02);
+  scene.transfer = Transfer::relaxed;
+  scene.gravity = g;
+  scene.bodies = {block(0.0, 0.0, 0.4, 0.1, mu_i(26000.0))};
+  Surface plough;
+  plough.solid.shape = Polygon{{{0.3, -0.1}, {0.38, -0.1}, {0.3, 0.3}}};
+  plough.contact = Surface::Contact::friction;
+  plough.friction = 0.2;
+  plough.velocity = {-0.5, 0.0, 0.0};
+  scene.surfaces = {plough};
+  Simulation simulation(scene, 1);
+  const std::int64_t points = simulation.point_count();
+  run_until(simulation, 1.0);  // it is through the wall by then
+  EXPECT_EQ(simulation.point_count(), points);
+  EXPECT_EQ(simulation.diagnostics().outflow_kg_per_m, 0.0);
+}
+
+// What surfaces cover is not there, and a body of which nothing is left is a mistake.
+TEST(RigidSurfaceTest, CutsBodies) {
+  Scene scene = empty_box(0.4, 0.4, 0.02);
+  scene.bodies = {block(0.1, 0.1, 0.2, 0.2, mu_i())};
+  const double whole = Simulation(scene, 1).diagnostics().mass_kg_per_m;
+  Surface surface;
+  surface.solid.shape = HalfSpace{{0.0, 0.15, 0.0}, {0.0, 1.0, 0.0}};  // halfway between points
+  scene.surfaces = {surface};
+  EXPECT_NEAR(Simulation(scene, 1).diagnostics().mass_kg_per_m, 0.75 * whole, 1e-12 * whole);
+  std::get<HalfSpace>(scene.surfaces[0].solid.shape).point[1] = 0.31;
+  try {
+    Simulation(scene, 1);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.key(), "body[0].origin");
   }
 }
 
@@ -297,6 +377,7 @@ TEST(SolidTest, TheNormalIsTheSlopeOfTheDistance) {
           // on one side at least: on the other another edge may be nearer
           const double ahead = (distance_at(step) - at.distance) / step;
           const double behind = (at.distance - distance_at(-step)) / step;
+          // distances below 2 lose a few eps, over the step: 1e-9
           EXPECT_LT(std::min(std::abs(ahead - 1.0), std::abs(behind - 1.0)), 1e-8);
           // the way back to the surface ends on it
           EXPECT_NEAR(distance_at(-at.distance), 0.0, 1e-14);
@@ -369,7 +450,8 @@ TEST(RigidSurfaceTest, APistonLiftsABlock) {
     const double flight = contact == Surface::Contact::friction ? 0.0125 : 0.0;
     EXPECT_GT(lifted, 0.475 - 0.005);
     EXPECT_LT(lifted, 0.475 + 0.005 + flight);
-    EXPECT_LT(std::abs(row.energy_residual_J_per_m), 0.01 * mass * g * lifted);
+    // one jump of the speed by V within a step, of which a ledger of second order may miss half
+    EXPECT_LT(std::abs(row.energy_residual_J_per_m), 0.25 * mass * 0.5 * 0.5);
   }
 }
 

@@ -1,0 +1,16 @@
+#pragma once
+/// \file
+/// The keys of a [[surface]], and of a polygon, which a body may be too.
+
+#include "input/keys.hpp"
+#include "mpm/scene/solid.hpp"
+
+namespace repose::input {
+
+/// Corners [[x, y], …], three at least.
+void corners_key(Keys& keys, const Key& key, mpm::Polygon& polygon);
+
+/// axes: of the scene, 2 or 3.
+void surface_keys(Keys& keys, mpm::Surface& surface, std::size_t axes);
+
+}  // namespace repose::input

@@ -1,0 +1,64 @@
+"""The tables of docs/surfaces.md and of the channels in data/benchmarks/plane_collapse_2 and _5.
+
+    PYTHONPATH=build/release/python python3 python/tools/surfaces.py hourglass | drum | channel
+
+One thread; the finer cells of the hourglass take ten minutes, everything else together five.
+"""
+
+import sys
+
+import numpy as np
+
+import repose
+
+
+def hourglass() -> None:
+    for h, widths in ((0.05, (0.314, 0.5, 0.7, 0.9, 1.096)), (0.025, (0.314, 0.7, 1.096))):
+        for width in widths:
+            left, right = 2.5 - width / 2, 2.5 + width / 2
+            sim = repose.Simulation("hourglass", threads=1, **{
+                "grid.h": h,
+                "surface[0].corners": [[-1.0, 0.6], [left, 0.6], [left, 1.0], [-1.0, 1.0]],
+                "surface[1].corners": [[right, 0.6], [6.0, 0.6], [6.0, 1.0], [right, 1.0]]})
+            start = sim.diagnostics()["mass_kg_per_m"]
+            gone = []
+            for time in (2.0, 5.0):
+                sim.step(until=time)
+                now = sim.diagnostics()
+                gone.append(now["outflow_kg_per_m"])
+                error = (now["mass_kg_per_m"] + gone[-1]) / start - 1.0
+            print(f"h = {h} m, slot of {width} m: {(gone[1] - gone[0]) / 3.0:.4f} kg/(m s), mass {error:.1e}", flush=True)
+
+
+def drum() -> None:
+    for spin in (0.25, 1.0, 2.5):
+        sim = repose.Simulation("drum", threads=1, **{"surface[0].spin": spin})
+        slopes = []
+        for time in (2.0, 2.5, 3.0, 3.5, 4.0):
+            sim.step(until=time)
+            x, y = sim.points.position.T
+            columns = np.arange(0.07, 0.171, 0.01)
+            # the third highest point of a column: what flies does not count
+            top = [np.sort(y[np.abs(x - at) < 0.005])[-3] for at in columns]
+            slopes.append(np.degrees(np.arctan(np.polyfit(columns, top, 1)[0])))
+        print(f"{spin} rad/s: {np.mean(slopes):.1f} deg, scatter {np.std(slopes, ddof=1):.1f}", flush=True)
+
+
+def channel() -> None:
+    for a, cells, depth, box, end, K in ((2, 13, 6, (78, 39), 1.4, 144060.0), (5, 8, 4, (120, 48), 2.2, 360150.0)):
+        h = 0.1 / cells
+        for friction in (0.0, 0.2, 0.4):
+            wall = {"friction": friction} if friction > 0.0 else "slip"
+            sim = repose.Simulation("channel_collapse", threads=1, **{
+                "grid.h": h, "scene.end_time": end, "domain.size": [box[0] * h, box[1] * h, depth * h],
+                "domain.near": wall, "domain.far": wall,
+                "body[0].size": [0.1, 0.1 * a, depth * h], "body[0].law.K": K})
+            sim.step(until=end)
+            now = sim.diagnostics()
+            print(f"a = {a}, walls {10 * depth * h:.2f} L_0 apart, friction {friction}: "
+                  f"run-out {(now['front_99_m'] - 0.1) / 0.1:.2f}, H/L_0 {now['height_m'] / 0.1:.2f}", flush=True)
+
+
+if __name__ == "__main__":
+    for name in sys.argv[1:]:
+        {"hourglass": hourglass, "drum": drum, "channel": channel}[name]()
