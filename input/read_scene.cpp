@@ -12,6 +12,7 @@
 #include "input/read_keys.hpp"
 #include "input/read_law.hpp"
 #include "input/read_surface.hpp"
+#include "input/read_terrain.hpp"
 #include "input/toml_text.hpp"
 #include "umat/in/library_law.hpp"
 
@@ -129,11 +130,21 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
   std::size_t axes = scene.dimensions();
   if (const TomlReader* const table = keys.reader()) {
     const toml::node* const size = table->get("size");
-    axes = size != nullptr && size->is_array() && size->as_array()->size() == 3 ? 3 : 2;
+    axes = scene.terrain || (size != nullptr && size->is_array() && size->as_array()->size() == 3)
+               ? 3
+               : 2;
+    if (scene.terrain) {  // material leaves a map where it ends
+      scene.left = scene.right = scene.near = scene.far = scene.top = {Wall::Kind::open};
+      if (size == nullptr) scene.domain = {};
+    }
   }
-  const Key size{"size", "m", "width and height of the box, in space also its depth", positive,
-                 required};
-  keys.place(size, axes, scene.domain);
+  const Key size =
+      Key{"size", "m", "width and height of the box, in space also its depth", positive, required}
+          .only_if(true, "with [terrain] it may be left to the map");
+  if (scene.terrain && keys.reader() != nullptr && !keys.reader()->has("size"))
+    keys.reader()->expect("size");
+  else
+    keys.place(size, axes, scene.domain);
   if (std::isnan(scene.domain[2])) scene.domain[2] = 1.0;  // reported; still a scene in space
   wall_key(keys, "floor", "lower edge", scene.floor);
   keys.value(
@@ -185,12 +196,13 @@ void disc_keys(Keys& keys, mpm::Body& body, bool is_disc, bool space) {
 }
 
 void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
-  static constexpr std::array<std::string_view, 2> in_space{"box", "cylinder"};
+  static constexpr std::array<std::string_view, 3> in_space{"box", "cylinder", "release"};
   static constexpr std::array<std::string_view, 3> in_plane{"box", "disc", "polygon"};
-  static constexpr std::array<std::string_view, 4> all{"box", "disc", "polygon", "cylinder"};
+  static constexpr std::array<std::string_view, 5> all{"box", "disc", "polygon", "cylinder",
+                                                       "release"};
   const bool space = axes == 3;
   keys.text({"name", "-", "for messages"}, body.name);
-  std::size_t shape = body.polygon ? 2 : body.disc ? 1 : 0;
+  std::size_t shape = body.polygon || body.release ? 2 : body.disc ? 1 : 0;
   keys.word({"shape", "-", "of the body"},
             keys.describes() ? std::span<const std::string_view>(all)
             : space          ? std::span<const std::string_view>(in_space)
@@ -204,13 +216,14 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
           shape == 0, box_only),
       axes, body.size);
   disc_keys(keys, body, shape == 1, space);
+  if (keys.reader() != nullptr) body.release = space && shape == 2;
   mpm::Polygon polygon = body.polygon.value_or(mpm::Polygon{});
   corners_key(keys,
               Key{"corners", "m", "of a polygon, in order: [[x, y], …]", {}, required}.only_if(
-                  shape == 2, "corners belong to a polygon"),
+                  shape == 2 && !space, "corners belong to a polygon"),
               polygon);
   // without its corners, which is reported, it has no box to be set
-  if (keys.reader() != nullptr && shape == 2 && polygon.corners.size() > 2)
+  if (keys.reader() != nullptr && shape == 2 && !space && polygon.corners.size() > 2)
     set_polygon(body, polygon);
   keys.place({"velocity", "m/s", "at the start"}, axes, body.velocity);
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
@@ -333,7 +346,17 @@ void scene_keys(Keys& keys, SceneFile& file) {
   mpm::Scene& scene = file.scene;
   keys.table({"scene", "-", "what is simulated", {}, required},
              [&](Keys& below) { general_keys(below, scene); });
-  keys.table({"domain", "-", "the box and its edges", {}, required},
+  const Key terrain{"terrain", "-", "in space: ground and release from maps"};
+  if (TomlReader* const reader = keys.reader()) reader->expect(terrain.name);
+  if (keys.reader() != nullptr ? keys.reader()->has(terrain.name)
+                               : keys.describes() || scene.terrain.has_value()) {
+    mpm::Terrain held = scene.terrain.value_or(mpm::Terrain{});
+    keys.table(terrain, [&](Keys& below) { terrain_keys(below, held); });
+    if (!keys.describes()) scene.terrain = std::move(held);
+  }
+  Key domain{"domain", "-", "the box and its edges", {}, required};
+  if (scene.terrain) domain.presence = Presence::defaulted;
+  keys.table(domain.only_if(true, "with [terrain] it may be left to the map"),
              [&](Keys& below) { domain_keys(below, scene); });
   keys.tables(
       {"body", "-", "a block of material", {}, required}, scene.bodies.size(),
@@ -367,6 +390,7 @@ SceneFile read_scene(InputFile& file) {
   scene.name = default_name(file);
   ReadKeys keys(root);
   scene_keys(keys, result);
+  if (file.ok() && scene.terrain) mpm::fit_to_terrain(scene);
   if (file.ok()) {
     const double height = scene.domain[1];
     if (mpm::raise_top_to_cells(scene))

@@ -66,6 +66,12 @@ InputFile open_input(const std::string& name_or_file, std::span<const std::strin
   return open("scene or point test", both, name_or_file, overrides);
 }
 
+std::optional<std::string_view> shipped_map(std::string_view name) {
+  for (const EmbeddedInput& map : embedded_maps)
+    if (map.name == name) return map.text;
+  return {};
+}
+
 std::string_view shipped_chart_set() { return embedded_chart_set; }
 
 std::vector<std::string_view> shipped_benchmarks() {

@@ -3,6 +3,8 @@
 /// Inputs that the program holds: the scenes of data/scenes, the point tests of data/experiments,
 /// the cases of data/benchmarks, and the set of charts of `repose chart all`.
 
+#include <optional>
+
 #include "input/input_file.hpp"
 
 namespace repose::input {
@@ -18,6 +20,9 @@ InputFile open_scene(const std::string& name_or_file, std::span<const std::strin
 InputFile open_test(const std::string& name_or_file, std::span<const std::string> overrides = {});
 /// Either of them, as `repose check` takes it.
 InputFile open_input(const std::string& name_or_file, std::span<const std::string> overrides = {});
+
+/// A map of data/scenes by its file's name, "valley.asc".
+std::optional<std::string_view> shipped_map(std::string_view name);
 
 /// data/charts/all.toml as it was built in.
 std::string_view shipped_chart_set();

@@ -31,7 +31,16 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 65> outputs{"manifest.json",
+constexpr std::array<std::string_view, 74> outputs{"manifest.json",
+                                                   "largest_depth.asc",
+                                                   "largest_depth.prj",
+                                                   "largest_speed.asc",
+                                                   "largest_speed.prj",
+                                                   "arrival_time.asc",
+                                                   "arrival_time.prj",
+                                                   "deposit.asc",
+                                                   "deposit.prj",
+                                                   "outlines.geojson",
                                                    "summary.json",
                                                    "checkpoint_previous.h5",
                                                    "sweep.csv",

@@ -70,20 +70,21 @@ struct Lacks {
   bool parts = false;
 };
 template <int dim>
-Lacks<dim> lacks(const Surface& surface, const Vector<dim>& ghost, const Vector<dim>& front,
-                 double s, const Vector<dim>& normal, const Vector<dim>& of_surface) {
+Lacks<dim> lacks(Surface::Contact contact, double friction, const Vector<dim>& ghost,
+                 const Vector<dim>& front, double s, const Vector<dim>& normal,
+                 const Vector<dim>& of_surface) {
   Vector<dim> delta, difference;
   for (std::size_t i = 0; i < dim; ++i) {
     delta[i] = ghost[i] - of_surface[i] + s * (front[i] - of_surface[i]);
     difference[i] = ghost[i] - front[i];
   }
   const double delta_n = dot(delta, normal);
-  if (surface.contact == Surface::Contact::friction && !(delta_n < 0.0)) return {{}, {}, true};
+  if (contact == Surface::Contact::friction && !(delta_n < 0.0)) return {{}, {}, true};
   add(delta, -delta_n, normal);
   add(difference, -dot(difference, normal), normal);
-  double share = surface.contact == Surface::Contact::no_slip ? 1.0 : 0.0;
-  if (surface.contact == Surface::Contact::friction) {
-    const double most = surface.friction * -delta_n, length = std::sqrt(dot(delta, delta));
+  double share = contact == Surface::Contact::no_slip ? 1.0 : 0.0;
+  if (contact == Surface::Contact::friction) {
+    const double most = friction * -delta_n, length = std::sqrt(dot(delta, delta));
     share = length > most ? most / length : 1.0;
   }
   Lacks<dim> result;
@@ -144,22 +145,65 @@ bool RigidContact<dim>::is_near(const GridOf<dim>& grid, const PointBlockOf<dim>
   }
   const double radius = grid.h() * std::sqrt(radius2);
   return std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& surface) {
-    return surface.nearest_at(time, centre).distance < radius;
+    return surface.holds_at(time, centre) || !surface.is_beyond_at(time, centre, radius);
   });
 }
 
+/// The ghosts of a block of nodes, as the surface lies.
 template <int dim>
-typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& surface,
-                                                              GridOf<dim>& grid,
-                                                              double time) const {
-  Layer layer;
-  const double h = grid.h();
+std::vector<typename RigidContact<dim>::Geometry> RigidContact<dim>::geometry_of(
+    const Surface& surface, const NodeBlockOf<dim>& nb, double h, double time) {
+  std::vector<Geometry> found;
   double radius2 = 0.0;  // of a block of nodes
   for (const int cells : Shape<dim>::cells) radius2 += 0.25 * cells * cells;
   const double radius = h * std::sqrt(radius2);
+  Position centre{};
+  for (std::size_t axis = 0; axis < dim; ++axis)
+    centre[axis] = h * (GridOf<dim>::first(axis, nb.at[axis]) + 0.5 * Shape<dim>::cells[axis]);
+  const double deep = surface.holds_at(time, centre) ? reach<dim> : bound;
+  if (surface.is_beyond_at(time, centre, radius + deep * h)) return found;
   const auto in_front = [&](const typename GridOf<dim>::Index& index) {
     return surface.nearest_at(time, position_of<dim>(index, h)).distance > bound * h;
   };
+  for (int n = 0; n < Shape<dim>::nodes; ++n) {
+    const Position x = position_of<dim>(node_index<dim>(nb, n), h);
+    const Nearest at = surface.nearest_at(time, x);
+    if (at.distance > bound * h || at.distance < -reach<dim> * h) continue;
+    Geometry ghost;
+    ghost.place = n;
+    ghost.normal = along_axes<dim>(at.normal);
+    ghost.friction = surface.friction_at(x);
+    // d: as far in front as the node lies behind, or so far that all donors are free
+    const double farthest = bound + std::sqrt(static_cast<double>(dim));
+    double d = std::max(-at.distance / h, bound);
+    Corners<dim> corners;
+    std::array<bool, std::size_t{1} << dim> free{};
+    for (;; d += 0.125) {
+      corners = corners_around<dim>(x, at, d * h, h);
+      bool all_free = true;
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        free[k] = corners[k].weight > 0.0 && in_front(corners[k].index);
+        all_free = all_free && (free[k] || corners[k].weight == 0.0);
+      }
+      if (d >= farthest || all_free) break;
+    }
+    ghost.s = -at.distance / (d * h);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      ghost.weight[k] = corners[k].weight;
+      ghost.free[k] = free[k];
+      ghost.donor[k] = corners[k].index;
+    }
+    found.push_back(ghost);
+  }
+  return found;
+}
+
+template <int dim>
+void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>& grid,
+                              double time) {
+  layer.ghosts.clear();
+  layer.donors.clear();
+  const double h = grid.h();
   std::unordered_map<std::int64_t, std::int32_t> known;
   const auto donor = [&](const typename GridOf<dim>::Index& index) -> std::int32_t {
     for (std::size_t i = 0; i < dim; ++i)  // beyond, no point of the box reaches
@@ -170,7 +214,7 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
     const auto place = static_cast<std::int32_t>(at.place);
     const auto [found, is_new] =
         known.try_emplace(std::int64_t{block} * Shape<dim>::nodes + place, -1);
-    if (is_new && in_front(index)) {
+    if (is_new) {
       found->second = static_cast<std::int32_t>(layer.donors.size());
       Donor& made = layer.donors.emplace_back();
       made.block = block;
@@ -179,42 +223,33 @@ typename RigidContact<dim>::Layer RigidContact<dim>::layer_of(const Surface& sur
     }
     return found->second;
   };
+  const bool moves = surface.moves();
   for (std::size_t b = 0; b < grid.node_blocks.size(); ++b) {
     const NodeBlockOf<dim>& nb = grid.node_blocks[b];
-    Position centre{};
-    for (std::size_t axis = 0; axis < dim; ++axis)
-      centre[axis] = h * (GridOf<dim>::first(axis, nb.at[axis]) + 0.5 * Shape<dim>::cells[axis]);
-    const double middle = surface.nearest_at(time, centre).distance;
-    if (middle > radius + bound * h || middle < -radius - reach<dim> * h) continue;
-    for (int n = 0; n < Shape<dim>::nodes; ++n) {
-      const Position x = position_of<dim>(node_index<dim>(nb, n), h);
-      const Nearest at = surface.nearest_at(time, x);
-      if (at.distance > bound * h || at.distance < -reach<dim> * h) continue;
+    std::vector<Geometry> anew;
+    const std::vector<Geometry>* geometry = &anew;
+    if (moves) {
+      anew = geometry_of(surface, nb, h, time);
+    } else {
+      const auto [found, is_new] = layer.geometry.try_emplace(nb.at);
+      if (is_new) found->second = geometry_of(surface, nb, h, time);
+      geometry = &found->second;
+    }
+    for (const Geometry& as_it_lies : *geometry) {
       Ghost ghost{};
       ghost.block = static_cast<std::int32_t>(b);
-      ghost.place = n;
-      ghost.normal = along_axes<dim>(at.normal);
+      ghost.place = as_it_lies.place;
+      ghost.s = as_it_lies.s;
+      ghost.friction = as_it_lies.friction;
+      ghost.normal = as_it_lies.normal;
+      const Position x = position_of<dim>(node_index<dim>(nb, ghost.place), h);
       ghost.velocity = along_axes<dim>(surface.velocity_at(time, x));
-      // d: as far in front as the node lies behind, or so far that all donors are free
-      const double farthest = bound + std::sqrt(static_cast<double>(dim));
-      double d = std::max(-at.distance / h, bound);
-      Corners<dim> corners;
-      for (;; d += 0.125) {
-        corners = corners_around<dim>(x, at, d * h, h);
-        if (d >= farthest || std::all_of(corners.begin(), corners.end(), [&](const auto& corner) {
-              return corner.weight == 0.0 || in_front(corner.index);
-            }))
-          break;
-      }
-      ghost.s = -at.distance / (d * h);
-      for (std::size_t k = 0; k < corners.size(); ++k) {
-        ghost.weight[k] = corners[k].weight;
-        ghost.donor[k] = corners[k].weight > 0.0 ? donor(corners[k].index) : -1;
-      }
+      ghost.weight = as_it_lies.weight;
+      for (std::size_t k = 0; k < ghost.donor.size(); ++k)
+        ghost.donor[k] = as_it_lies.free[k] ? donor(as_it_lies.donor[k]) : -1;
       layer.ghosts.push_back(ghost);
     }
   }
-  return layer;
 }
 
 template <int dim>
@@ -256,7 +291,8 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
       front = own;
     }
     const double s = ghost.per_borne > 0.0 ? ghost.s : 0.0;
-    const Lacks<dim> of = lacks<dim>(surface, own, front, s, ghost.normal, ghost.velocity);
+    const Lacks<dim> of =
+        lacks<dim>(surface.contact, ghost.friction, own, front, s, ghost.normal, ghost.velocity);
     ghost.acts = !of.parts;
     if (!ghost.acts) continue;
     ghost.odd = of.odd;
@@ -310,7 +346,7 @@ WallEffect RigidContact<dim>::apply(GridOf<dim>& grid, double time, bool sorted,
   WallEffect effect;
   layers_.resize(surfaces_.size());
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-    if (sorted || surfaces_[k].moves()) layers_[k] = layer_of(surfaces_[k], grid, time);
+    if (sorted || surfaces_[k].moves()) build(surfaces_[k], layers_[k], grid, time);
     effect += apply(surfaces_[k], layers_[k], grid, work);
   }
   return effect;
@@ -320,8 +356,8 @@ template <int dim>
 bool RigidContact<dim>::keep_out(std::array<double, dim>& x, double time, double hair) const {
   bool moved = false;
   for (const Surface& surface : surfaces_) {
+    if (!surface.holds_at(time, position_of<dim>(x))) continue;
     const Nearest at = surface.nearest_at(time, position_of<dim>(x));
-    if (!(at.distance < 0.0)) continue;
     for (std::size_t i = 0; i < dim; ++i) x[i] += (hair - at.distance) * at.normal[i];
     moved = true;
   }

@@ -26,6 +26,7 @@
 /// forces alone: the increment v − u carries them to points that keep a velocity of their own.
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "mpm/boundary/walls.hpp"
@@ -58,9 +59,18 @@ class RigidContact {
     double mass, odd_mass, even_mass;
     std::array<double, dim> odd, even;
   };
+  /// Of a ghost, all that follows from where the surface lies.
+  struct Geometry {
+    std::int32_t place = 0;  ///< in its block
+    double s = 0.0, friction = 0.0;
+    std::array<double, dim> normal{};
+    std::array<typename GridOf<dim>::Index, std::size_t{1} << dim> donor{};
+    std::array<double, std::size_t{1} << dim> weight{};
+    std::array<bool, std::size_t{1} << dim> free{};  ///< the donor is no ghost itself
+  };
   struct Ghost {
     std::int32_t block, place;
-    double s;
+    double s, friction;
     std::array<double, dim> normal, velocity;               ///< velocity of the surface
     std::array<std::int32_t, std::size_t{1} << dim> donor;  ///< into donors; −1: none
     std::array<double, std::size_t{1} << dim> weight;
@@ -72,9 +82,13 @@ class RigidContact {
   struct Layer {  ///< of one surface
     std::vector<Ghost> ghosts;
     std::vector<Donor> donors;
+    /// By place of the block; of a surface at rest, for as long as the run lasts.
+    std::map<std::array<std::int32_t, dim>, std::vector<Geometry>> geometry;
   };
 
-  Layer layer_of(const Surface& surface, GridOf<dim>& grid, double time) const;
+  static std::vector<Geometry> geometry_of(const Surface& surface, const NodeBlockOf<dim>& block,
+                                           double h, double time);
+  static void build(const Surface& surface, Layer& layer, GridOf<dim>& grid, double time);
   WallEffect apply(const Surface& surface, Layer& layer, GridOf<dim>& grid, double& work) const;
 
   std::vector<Surface> surfaces_;

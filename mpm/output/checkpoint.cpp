@@ -210,6 +210,12 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
     for (std::size_t f = 0; f < points.fields; ++f)
       write(file, fmt::format("body{}_field{}", b, f), points.values(f));
   }
+  if (s.maps) {
+    write(file, "maps_gone", std::vector<double>{s.maps->gone});
+    write(file, "maps_depth_max", s.maps->depth_max);
+    write(file, "maps_speed_max", s.maps->speed_max);
+    write(file, "maps_arrival", s.maps->arrival);
+  }
   H5Fflush(file, H5F_SCOPE_GLOBAL);
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   if (size < 0) throw std::runtime_error("HDF5 could not give the checkpoint's size");
@@ -268,6 +274,20 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
       }
       points.count = 0;
       for (const std::int64_t id : points.id) points.count += id >= 0 ? 1 : 0;
+    }
+
+    if (s.maps) {
+      const auto restore = [&](const char* name, std::vector<double>& map) {
+        std::vector<double> values = read<double>(file, name);
+        if (values.size() != map.size()) reject("its maps are of another size");
+        map = std::move(values);
+      };
+      std::vector<double> gone{s.maps->gone};
+      restore("maps_gone", gone);
+      s.maps->gone = gone[0];
+      restore("maps_depth_max", s.maps->depth_max);
+      restore("maps_speed_max", s.maps->speed_max);
+      restore("maps_arrival", s.maps->arrival);
     }
 
     const std::vector<std::int64_t> blocks = read<std::int64_t>(file, "blocks");

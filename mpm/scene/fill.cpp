@@ -139,12 +139,11 @@ bool within_shape(const Body& body, const std::array<double, dim>& x) {
 
 /// The rigid surfaces cut the bodies.
 template <int dim>
-bool behind_a_surface(const Scene& scene, const std::array<double, dim>& x) {
+bool behind_a_surface(const std::vector<Surface>& surfaces, const std::array<double, dim>& x) {
   Position place{};
   for (std::size_t i = 0; i < dim; ++i) place[i] = x[i];
-  return std::any_of(scene.surfaces.begin(), scene.surfaces.end(), [&](const Surface& surface) {
-    return surface.nearest_at(0.0, place).distance < 0.0;
-  });
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [&](const Surface& surface) { return surface.holds_at(0.0, place); });
 }
 
 }  // namespace
@@ -203,7 +202,15 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
       lattice[i] = std::llround(
           std::ceil((body.origin[i] + body.size[i]) / spacing[i] - lattice_tolerance) - first);
     }
-  points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
+  if (body.release)  // in columns on the grid's own lattice, of as many points as its depth takes
+    for (const std::size_t i : {0U, 2U}) {
+      spacing[i] = point_spacing(scene);
+      const double first = std::floor(body.origin[i] / spacing[i]);
+      origin[i] = first * spacing[i];
+      lattice[i] = std::llround(std::ceil((body.origin[i] + body.size[i]) / spacing[i]) - first);
+    }
+  if (!body.release) points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
+  const std::vector<Surface> surfaces = rigid_surfaces(scene);
   double volume = 1.0;
   for (std::size_t i = 0; i < dim; ++i) volume *= spacing[i];
   const double g = scene.gravity * std::cos(scene.tilt_deg * std::numbers::pi / 180.0);
@@ -237,7 +244,29 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
     });
     return initial(here);
   };
-  for (std::int64_t j = 0; j < lattice[1]; ++j) {
+  if constexpr (dim == 3) {
+    for (std::int64_t k = 0; body.release && k < lattice[2]; ++k)
+      for (std::int64_t i = 0; i < lattice[0]; ++i) {
+        const double x = coordinate(0, i), z = coordinate(2, k);
+        const double of_column =
+            scene.terrain->release->volume_over({x - 0.5 * spacing[0], z - 0.5 * spacing[2]},
+                                                {x + 0.5 * spacing[0], z + 0.5 * spacing[2]});
+        const double depth = of_column / (spacing[0] * spacing[2]);
+        if (depth < 1e-12 * scene.h) continue;
+        const double ground = scene.terrain->ground->height(x, z);
+        const auto count = std::max<std::int64_t>(1, std::llround(depth / point_spacing(scene)));
+        for (std::int64_t j = 0; j < count; ++j) {
+          const double share = (static_cast<double>(j) + 0.5) / static_cast<double>(count);
+          const std::array<double, dim> place{x, ground + share * depth, z};
+          if (behind_a_surface<dim>(surfaces, place)) continue;
+          append<dim>(points, place, body,
+                      body.lithostatic ? at_depth((1.0 - share) * depth, 0.0) : uniform,
+                      of_column / static_cast<double>(count),
+                      first_id + static_cast<std::int64_t>(points.count));
+        }
+      }
+  }
+  for (std::int64_t j = 0; !body.release && j < lattice[1]; ++j) {
     const double y = coordinate(1, j);
     InitialPoint at = uniform;
     double above = std::numeric_limits<double>::quiet_NaN();  // of which `at` is made
@@ -260,7 +289,7 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
           x[1] = piece.centroid[1];
           here_volume = piece.area;
         }
-        if (!within_shape<dim>(body, x) || behind_a_surface<dim>(scene, x)) continue;
+        if (!within_shape<dim>(body, x) || behind_a_surface<dim>(surfaces, x)) continue;
         append<dim>(points, x, body, at, here_volume,
                     first_id + static_cast<std::int64_t>(points.count));
       }

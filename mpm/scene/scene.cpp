@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 namespace repose::mpm {
 
@@ -58,6 +59,58 @@ void set_polygon(Body& body, const Polygon& polygon) {
     body.origin[k] = (*least)[k];
     body.size[k] = (*most)[k] - (*least)[k];
   }
+}
+
+void set_release(Body& body, const Terrain& terrain) {
+  body.release = true;
+  const Release& release = *terrain.release;
+  double bottom = HUGE_VAL, top = -HUGE_VAL;
+  constexpr int places = 200;  // along each side; the box only bounds what is filled
+  for (int i = 0; i <= places; ++i)
+    for (int k = 0; k <= places; ++k) {
+      const double y = terrain.ground->height(
+          release.low()[0] + (release.high()[0] - release.low()[0]) * i / places,
+          release.low()[1] + (release.high()[1] - release.low()[1]) * k / places);
+      bottom = std::min(bottom, y);
+      top = std::max(top, y);
+    }
+  body.origin = {release.low()[0], bottom, release.low()[1]};
+  body.size = {release.high()[0] - release.low()[0], top + release.deepest() - bottom,
+               release.high()[1] - release.low()[1]};
+}
+
+void fit_to_terrain(Scene& scene) {
+  Terrain& terrain = *scene.terrain;
+  const auto [lowest, highest] =
+      std::minmax_element(terrain.ground_map.values.begin(), terrain.ground_map.values.end());
+  const double h = scene.h;
+  if (!terrain.base) terrain.base = h * (std::floor(*lowest / h) - 3.0);
+  terrain.place();
+  const double deepest = terrain.release ? terrain.release->deepest() : 0.0;
+  const auto whole = [&](double length) { return h * std::floor(length / h + lattice_tolerance); };
+  if (scene.domain[0] == 0.0) scene.domain[0] = whole(terrain.ground_map.width());
+  if (scene.domain[2] == 0.0) scene.domain[2] = whole(terrain.ground_map.height());
+  // what flows may be thrown up by about as much as it is deep; eight cells for what is shallow
+  if (scene.domain[1] == 0.0)
+    scene.domain[1] = h * std::ceil((*highest - *terrain.base + 2.0 * deepest) / h + 8.0);
+  for (Body& body : scene.bodies)
+    if (body.release && terrain.release) set_release(body, terrain);
+}
+
+std::vector<Surface> rigid_surfaces(const Scene& scene) {
+  std::vector<Surface> all = scene.surfaces;
+  if (scene.terrain) all.push_back(scene.terrain->surface());
+  return all;
+}
+
+double expected_points(const Scene& scene, const Body& body) {
+  const double spacing = point_spacing(scene);
+  if (body.release) return scene.terrain->release->volume() / (spacing * spacing * spacing);
+  double points = 1.0;
+  for (std::size_t k = 0; k < scene.dimensions(); ++k) points *= body.size[k] / spacing;
+  if (body.disc)
+    points *= std::numbers::pi / 4.0 * (1.0 - std::pow(body.disc->hole / body.disc->radius, 2.0));
+  return points;
 }
 
 bool raise_top_to_cells(Scene& scene) {

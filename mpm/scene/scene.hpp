@@ -11,6 +11,7 @@
 
 #include "models/registry.hpp"
 #include "mpm/scene/solid.hpp"
+#include "mpm/scene/terrain.hpp"
 
 namespace repose::mpm {
 
@@ -45,6 +46,8 @@ struct Body {
   /// Only what of its lattice cells lies in it, in the plane; origin and size bound it:
   /// set_polygon()
   std::optional<Polygon> polygon;
+  /// What the scene's terrain releases, in space; origin and size bound it: set_release()
+  bool release = false;
   std::array<double, 3> velocity{};  ///< initial velocity [m/s]
   double spin = 0.0;  ///< initial angular velocity about z, through the body's centre [rad/s]
   LawSpec law;
@@ -111,7 +114,7 @@ struct Scene {
   /// Box from the origin to this corner [m]; without an extent along z the scene is plane strain,
   /// per metre of depth
   std::array<double, 3> domain{};
-  std::size_t dimensions() const { return domain[2] == 0.0 ? 2 : 3; }
+  std::size_t dimensions() const { return domain[2] == 0.0 && !terrain ? 2 : 3; }
   Wall floor{Wall::Kind::no_slip};
   Wall left{Wall::Kind::slip};
   Wall right{Wall::Kind::slip};
@@ -120,7 +123,8 @@ struct Scene {
   Wall far{Wall::Kind::slip};   ///< at the other end of z
 
   std::vector<Body> bodies;
-  std::vector<Surface> surfaces;  ///< rigid; bodies are cut by them
+  std::vector<Surface> surfaces;   ///< rigid; bodies are cut by them
+  std::optional<Terrain> terrain;  ///< ground that is one more of them, in space
 
   double h = 0.0;           ///< cell size [m]
   int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16; in space a cube: 1, 8, 27
@@ -178,6 +182,22 @@ void set_cylinder(Body& body, const Disc& disc, double base, double height);
 
 /// Makes a body a polygon: its origin and size become those of the box around it.
 void set_polygon(Body& body, const Polygon& polygon);
+
+/// Makes a body what the terrain releases, on its ground: its origin and size become those of the
+/// box around it.
+void set_release(Body& body, const Terrain& terrain);
+
+/// Makes a box fit its terrain, which it places in it: what of the size is not given (0) is as much
+/// of the map as whole cells cover, and high enough for what is released; the floor, unless it is
+/// given, lies three cells below the lowest ground. Bodies are set to the release where they are
+/// it.
+void fit_to_terrain(Scene& scene);
+
+/// The surfaces and the ground of the terrain.
+std::vector<Surface> rigid_surfaces(const Scene& scene);
+
+/// About how many points a body has: its volume over theirs, rigid surfaces aside.
+double expected_points(const Scene& scene, const Body& body);
 
 /// Points of a body along x, y and z (1 in the plane): its size over point_spacing(), which
 /// validate() has found whole.

@@ -63,6 +63,31 @@ Nearest nearest_of(const Polygon& polygon, const Position& x) {
   return {inside ? -distance : distance, {sign * outward[0], sign * outward[1], 0.0}};
 }
 
+/// The foot of the perpendicular, by Gauss and Newton's steps on the squared distance.
+Nearest nearest_of(const Ground& ground, const Position& x) {
+  const HeightMap& map = *ground.map;
+  std::array<double, 2> foot{x[0], x[2]};
+  HeightMap::Sample at = map.at(foot[0], foot[1]);
+  const double above = x[1] - at.height;
+  const double steep = std::hypot(1.0, at.gradient[0], at.gradient[1]);
+  const Nearest straight{above / steep,
+                         {-at.gradient[0] / steep, 1.0 / steep, -at.gradient[1] / steep}};
+  constexpr int rounds = 4;  // the map is curved by little over the few cells that matter
+  for (int k = 0; k < rounds; ++k) {
+    const auto& g = at.gradient;
+    const double rise = x[1] - at.height;
+    const std::array<double, 2> slope{x[0] - foot[0] + rise * g[0], x[2] - foot[1] + rise * g[1]};
+    const double along = (g[0] * slope[0] + g[1] * slope[1]) / (1.0 + g[0] * g[0] + g[1] * g[1]);
+    for (std::size_t i = 0; i < 2; ++i) foot[i] += slope[i] - g[i] * along;
+    at = map.at(foot[0], foot[1]);
+  }
+  const double length = std::hypot(x[0] - foot[0], x[1] - at.height, x[2] - foot[1]);
+  // the place straight below is never nearer than the foot
+  if (!(length <= std::abs(above))) return straight;
+  const double n = std::hypot(1.0, at.gradient[0], at.gradient[1]);
+  return {above < 0.0 ? -length : length, {-at.gradient[0] / n, 1.0 / n, -at.gradient[1] / n}};
+}
+
 }  // namespace
 
 Piece piece_of(const Polygon& polygon) {
@@ -152,23 +177,58 @@ Nearest nearest(const Solid& solid, const Position& x) {
   return found;
 }
 
+bool is_beyond(const Solid& solid, const Position& x, double radius) {
+  if (const auto* const ground = std::get_if<Ground>(&solid.shape)) {
+    const double above = std::abs(x[1] - ground->map->height(x[0], x[2]));
+    return above > radius * std::hypot(1.0, ground->map->steepest());
+  }
+  return std::abs(nearest(solid, x).distance) > radius;
+}
+
+bool holds(const Solid& solid, const Position& x) {
+  if (const auto* const ground = std::get_if<Ground>(&solid.shape))
+    return (x[1] < ground->map->height(x[0], x[2])) != solid.hollow;
+  return nearest(solid, x).distance < 0.0;
+}
+
 bool Surface::moves() const {
   return (spin != 0.0 || velocity != std::array<double, 3>{}) && stops > starts;
 }
 
 double Surface::moved_for(double time) const { return std::clamp(time, starts, stops) - starts; }
 
-Nearest Surface::nearest_at(double time, const Position& x) const {
+/// x = pivot + velocity t + R (x_0 − pivot).
+Position Surface::at_start(double time, const Position& x) const {
   const double t = moved_for(time);
-  if (t == 0.0 || !moves()) return nearest(solid, x);
-  // in axes that move along: x = pivot + velocity t + R (x_0 − pivot)
+  if (t == 0.0 || !moves()) return x;
   const double c = std::cos(spin * t), s = std::sin(spin * t);
   const double dx = x[0] - pivot[0] - velocity[0] * t, dy = x[1] - pivot[1] - velocity[1] * t;
-  Nearest found = nearest(
-      solid, {pivot[0] + c * dx + s * dy, pivot[1] - s * dx + c * dy, x[2] - velocity[2] * t});
+  return {pivot[0] + c * dx + s * dy, pivot[1] - s * dx + c * dy, x[2] - velocity[2] * t};
+}
+
+Nearest Surface::nearest_at(double time, const Position& x) const {
+  const double t = moved_for(time);
+  Nearest found = nearest(solid, at_start(time, x));
+  if (t == 0.0 || !moves()) return found;
+  const double c = std::cos(spin * t), s = std::sin(spin * t);
   const Position n = found.normal;
   found.normal = {c * n[0] - s * n[1], s * n[0] + c * n[1], n[2]};
   return found;
+}
+
+bool Surface::is_beyond_at(double time, const Position& x, double radius) const {
+  return is_beyond(solid, at_start(time, x), radius);
+}
+
+bool Surface::holds_at(double time, const Position& x) const {
+  return holds(solid, at_start(time, x));
+}
+
+double Surface::friction_at(const Position& x) const {
+  if (!friction_map) return friction;
+  // between cells of a map, cubic convolution overshoots
+  return std::clamp(friction_map->height(x[0], x[2]), friction_map->lowest(),
+                    friction_map->highest());
 }
 
 std::array<double, 3> Surface::velocity_at(double time, const Position& x) const {
@@ -191,6 +251,15 @@ Polygon Surface::outline(double time, double z, const std::array<double, 2>& low
       shape.corners.push_back({ball->centre[0] + std::sqrt(r2) * std::cos(a),
                                ball->centre[1] + std::sqrt(r2) * std::sin(a)});
     }
+  } else if (const auto* const ground = std::get_if<Ground>(&solid.shape)) {
+    constexpr int places = 400;
+    for (int k = 0; k <= places; ++k) {
+      const double x = low[0] + (high[0] - low[0]) * k / places;
+      shape.corners.push_back({x, ground->map->height(x, z)});
+    }
+    const double deep = std::min(low[1], ground->map->lowest()) - 1.0;
+    shape.corners.push_back({high[0], deep});
+    shape.corners.push_back({low[0], deep});
   } else {
     // a rectangle on the line's rigid side, larger than what is looked at
     const auto& plane = std::get<HalfSpace>(solid.shape);

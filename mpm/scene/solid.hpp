@@ -4,9 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
+
+#include "mpm/scene/height_map.hpp"
 
 namespace repose::mpm {
 
@@ -29,6 +32,11 @@ struct Polygon {
   std::vector<std::array<double, 2>> corners;  ///< in either sense of rotation [m]
 };
 
+/// All that lies below a surface of heights, in space.
+struct Ground {
+  std::shared_ptr<const HeightMap> map;
+};
+
 /// Area of a polygon and its centroid.
 struct Piece {
   double area = 0.0;                 ///< [m²]
@@ -44,7 +52,7 @@ Polygon clipped(const Polygon& polygon, const std::array<double, 2>& low,
 bool overlap(const Polygon& a, const Polygon& b, double slack);
 
 struct Solid {
-  std::variant<HalfSpace, Ball, Polygon> shape;
+  std::variant<HalfSpace, Ball, Polygon, Ground> shape;
   bool hollow = false;  ///< rigid is what lies outside
 };
 
@@ -55,6 +63,10 @@ struct Nearest {
   Position normal{};
 };
 Nearest nearest(const Solid& solid, const Position& x);
+/// Whether the surface is certainly farther from x than `radius` [m]; quicker than nearest().
+bool is_beyond(const Solid& solid, const Position& x, double radius);
+/// Whether x lies in the rigid part; quicker than nearest().
+bool holds(const Solid& solid, const Position& x);
 
 /// A rigid surface, at rest or moving as one.
 struct Surface {
@@ -66,7 +78,9 @@ struct Surface {
   std::string name;
   Solid solid;  ///< where it is at the start
   Contact contact = Contact::no_slip;
-  double friction = 0.0;             ///< Coulomb coefficient, for Contact::friction
+  double friction = 0.0;  ///< Coulomb coefficient, for Contact::friction
+  /// The same from place to place, over the whole of the box; takes the place of `friction`.
+  std::shared_ptr<const HeightMap> friction_map{};
   std::array<double, 3> velocity{};  ///< [m/s]
   double spin = 0.0;                 ///< about z, through `pivot` [rad/s]
   std::array<double, 2> pivot{};     ///< at the start; moves with the surface [m]
@@ -76,6 +90,9 @@ struct Surface {
   bool moves() const;
   /// At x and a time: the distance and normal, and the velocity of what is rigid there.
   Nearest nearest_at(double time, const Position& x) const;
+  bool is_beyond_at(double time, const Position& x, double radius) const;
+  bool holds_at(double time, const Position& x) const;
+  double friction_at(const Position& x) const;
   std::array<double, 3> velocity_at(double time, const Position& x) const;
   /// Its outline in the plane z at a time, closed, within the rectangle from `low` to `high`; empty
   /// where there is none of it. A hollow one has the outline of its hole.
@@ -84,6 +101,8 @@ struct Surface {
 
  private:
   double moved_for(double time) const;
+  /// Of a place, where it was in the surface's own axes at the start.
+  Position at_start(double time, const Position& x) const;
 };
 
 }  // namespace repose::mpm

@@ -218,9 +218,7 @@ void check_geometry(const Scene& scene) {
                              number(body.origin[k]) + " to " + number(end) +
                              " m, outside the box [0, " + number(scene.domain[k]) + "] m");
     }
-    double in_body = 1.0;
-    for (std::size_t k = 0; k < scene.dimensions(); ++k) in_body *= body.size[k] / spacing;
-    points += in_body;
+    points += expected_points(scene, body);
   }
   if (points > max_points)
     throw InputError(
@@ -232,7 +230,8 @@ void check_geometry(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t k = 0; k < scene.dimensions(); ++k) {
       const double size = scene.bodies[i].size[k];
-      if (scene.bodies[i].polygon || is_whole_multiple(size, spacing)) continue;
+      if (scene.bodies[i].polygon || scene.bodies[i].release || is_whole_multiple(size, spacing))
+        continue;
       const std::string near = nearby_h(scene, true);
       throw InputError(path_of(i, "size"), "the points cannot represent " + number(size) +
                                                " m along " + axis[k] + " exactly: they stand " +
@@ -297,6 +296,7 @@ void check_overlap(const Scene& scene) {
       if (to[0] - from[0] <= slack || to[1] - from[1] <= slack ||
           (scene.dimensions() == 3 && to[2] - from[2] <= slack))
         continue;
+      if (a.release || b.release) continue;  // the box around it is not what it fills
       if ((a.polygon || b.polygon) && !overlap(outline(a), outline(b), slack)) continue;
       throw InputError(path_of(i, "origin"), name(i) + " overlaps " + name(j) + " in x = [" +
                                                  number(from[0]) + ", " + number(to[0]) +
@@ -354,7 +354,7 @@ void check_surfaces(const Scene& scene) {
                                            " s, before it begins to move at " +
                                            number(surface.starts) + " s");
   }
-  if (scene.surfaces.empty()) return;
+  if (scene.surfaces.empty() && !scene.terrain) return;
   if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
     throw InputError("step.transfer", "rigid surfaces do not go with transfer = \"" +
                                           std::string(name_of(scene.transfer)) +
@@ -364,6 +364,50 @@ void check_surfaces(const Scene& scene) {
                      "rigid surfaces do not go with viscosity = \"implicit\" yet");
   if (scene.left.kind == Wall::Kind::periodic)
     throw InputError("domain.left", "rigid surfaces do not go with periodic edges yet");
+}
+
+/// The ground and what is released on it.
+void check_terrain(const Scene& scene) {
+  std::size_t released = 0;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!scene.bodies[i].release) continue;
+    if (!scene.terrain || !scene.terrain->release)
+      throw InputError(path_of(i, "shape"),
+                       "shape = \"release\" needs terrain.release, a map of depths or regions");
+    if (++released > 1)
+      throw InputError(path_of(i, "shape"), "the terrain's release can be one body only");
+  }
+  if (!scene.terrain) return;
+  const Terrain& terrain = *scene.terrain;
+  if (scene.dimensions() != 3)
+    throw InputError("domain.size", "a terrain is for scenes in space: [x, y, z]");
+  if (scene.tilt_deg != 0.0)
+    throw InputError("scene.tilt_deg", "on a terrain, gravity points down: leave the tilt out");
+  if (terrain.release && released == 0)
+    throw InputError("terrain.release",
+                     "no body takes what is released: a [[body]] with shape = \"release\" does");
+  if (terrain.contact == Surface::Contact::friction && !terrain.friction_map)
+    require(terrain.friction, not_negative, "terrain.friction", "friction");
+  if (terrain.least_depth)
+    require(*terrain.least_depth, positive, "terrain.least_depth", "least_depth");
+  const std::array<double, 2> map{terrain.ground_map.width(), terrain.ground_map.height()};
+  for (const std::size_t k : {0U, 2U})
+    if (scene.domain[k] > map[k / 2] * (1.0 + 1e-9))
+      throw InputError("domain.size", "the box is " + number(scene.domain[k]) + " m long along " +
+                                          (k == 0 ? "x" : "z") + ", and the map of the ground " +
+                                          number(map[k / 2]) + " m");
+  if (terrain.release)
+    for (const std::size_t k : {0U, 1U})
+      if (terrain.release->low()[k] < 0.0 || terrain.release->high()[k] > scene.domain[2 * k])
+        throw InputError("terrain.release",
+                         "what is released reaches from " + number(terrain.release->low()[k]) +
+                             " to " + number(terrain.release->high()[k]) + " m to the " +
+                             (k == 0 ? "east of the ground's western" : "south of its northern") +
+                             " edge, and the box from 0 to " + number(scene.domain[2 * k]) +
+                             " m: are both maps in the same coordinates?");
+  if (terrain.ground->lowest() < 0.0)
+    throw InputError("terrain.base", "the ground is " + number(-terrain.ground->lowest()) +
+                                         " m lower than the box's floor in places");
 }
 
 void check_polygons(const Scene& scene) {
@@ -497,6 +541,7 @@ void validate(const Scene& scene) {
   check_numbers(scene);
   check_cells(scene);
   check_periodic(scene);
+  check_terrain(scene);
   check_geometry(scene);
   check_discs(scene);
   check_polygons(scene);

@@ -38,7 +38,7 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     : scene(given),
       gravity(gravity_of<dim>(given)),
       walls{given.left, given.right, given.floor, given.top, given.near, given.far},
-      contact(given.surfaces),
+      contact(rigid_surfaces(given)),
       grid(given.h, cells<dim>(given)),
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
@@ -80,6 +80,8 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
   ledger.kinetic = e.kinetic;
   ledger.power = initial_power();
   highest_energy = energy_bound();
+  if (scene.terrain) maps.emplace(scene);
+  observe_flow(0.0);
 }
 
 template <int dim>
@@ -154,6 +156,13 @@ double Simulation::time() const {
 }
 std::int64_t Simulation::steps() const {
   return visit([](const auto& s) { return s.steps; });
+}
+Simulation::PlanMaps Simulation::plan_maps() const {
+  if (!space_ || !space_->maps)
+    throw InputError("terrain", "only a scene with a terrain has maps of its flow");
+  const FlowMaps& maps = *space_->maps;
+  return {maps.columns,   maps.rows,      maps.h,       maps.least_depth,
+          maps.depth_max, maps.speed_max, maps.arrival, maps.depth(space_->bodies)};
 }
 std::int64_t Simulation::point_steps() const {
   return visit([](const auto& s) { return s.point_steps; });

@@ -86,6 +86,19 @@ class Simulation {
   };
   Profile profile() const;
 
+  /// What the flow over a terrain has left at the nodes (i h, k h) of its plan, x first.
+  struct PlanMaps {
+    std::size_t columns, rows;
+    double h;                         ///< [m]
+    double least_depth;               ///< from which on a node counts as reached [m]
+    std::vector<double> depth_max_m;  ///< largest solid depth, measured along y
+    std::vector<double> speed_max;    ///< largest mean speed of a column so deep [m/s]
+    std::vector<double> arrival_s;    ///< when it first was so deep; HUGE_VAL: never
+    std::vector<double> depth_m;      ///< solid depth now
+  };
+  /// Errors: InputError for a scene without a terrain.
+  PlanMaps plan_maps() const;
+
   /// Pressure against overburden, for a deposit in the plane at rest (gravity along −y): points
   /// deeper than 2h below the surface, where the deposit has at least a quarter of its greatest
   /// depth.

@@ -10,6 +10,7 @@
 #include "mpm/boundary/rigid_contact.hpp"
 #include "mpm/boundary/walls.hpp"
 #include "mpm/grid/grid.hpp"
+#include "mpm/step/flow_maps.hpp"
 #include "mpm/step/implicit_viscosity.hpp"
 #include "mpm/step/ledger.hpp"
 #include "mpm/step/simulation.hpp"
@@ -46,6 +47,8 @@ class Simulation::Impl {
   void extend_velocity();            ///< XPIC, FMPM beyond first order (extended_pic.cpp)
   void grid_to_points(double dt);    ///< G2P, move, update stress, P2G of the next step
   void close_ledger();               ///< kinetic energies before and after; throws NumericalFailure
+
+  void observe_flow(double way);  ///< for the maps of a terrain
 
   SeriesRow diagnostics();
   Deposit deposit() const;
@@ -108,8 +111,9 @@ class Simulation::Impl {
   Signals signals;          ///< of the points
   double node_share = 1.0;  ///< largest signal of a node over that of a point (step_size.hpp)
   Ledger ledger;
-  double highest_energy = 0.0;  ///< what kinetic energy can never exceed [J/m]
-  double initial_height = 0.0;  ///< H_0: top of the highest body [m]
+  double highest_energy = 0.0;   ///< what kinetic energy can never exceed [J/m]
+  std::optional<FlowMaps> maps;  ///< of a scene with a terrain
+  double initial_height = 0.0;   ///< H_0: top of the highest body [m]
 
  private:
   struct BlockSums {

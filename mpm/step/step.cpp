@@ -30,6 +30,13 @@ void Simulation::Impl<dim>::step(double stop_at) {
   time = tiles_time;
   ++steps;
   close_ledger();
+  observe_flow(dt * signals.speed);
+}
+
+template <int dim>
+void Simulation::Impl<dim>::observe_flow(double way) {
+  if constexpr (dim == 3)
+    if (maps) maps->observe(bodies, time, way);
 }
 
 template <int dim>
@@ -147,6 +154,7 @@ void Simulation::Impl<dim>::measure_signals() {
 
 #define REPOSE_STEP(DIM)                                            \
   template void Simulation::Impl<DIM>::step(double);                \
+  template void Simulation::Impl<DIM>::observe_flow(double);        \
   template void Simulation::Impl<DIM>::sort_if_needed();            \
   template double Simulation::Impl<DIM>::choose_step(double) const; \
   template Retention Simulation::Impl<DIM>::retention(double) const;

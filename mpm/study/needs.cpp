@@ -31,23 +31,31 @@ Needs needs_in(const Scene& scene) {
   }
   double slots_bytes = 0.0, point_blocks = 0.0, node_blocks = 0.0;
   for (const Body& body : scene.bodies) {
-    const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
-    double slots = 1.0, own = 1.0, around = 1.0;
+    double own = 1.0, around = 1.0;
     for (std::size_t k = 0; k < dim; ++k) {
-      slots *= static_cast<double>(lattice[k]);
       own *= blocks_of(body.size[k] / scene.h, Shape<dim>::cells[k], 1.0);
       around *= blocks_of(body.size[k] / scene.h, Shape<dim>::cells[k], 3.0);
     }
-    const double share = body.disc ? std::numbers::pi / 4.0 *
-                                         (1.0 - std::pow(body.disc->hole / body.disc->radius, 2.0))
-                                   : 1.0;
-    needs.points += slots * share;
+    const double points = expected_points(scene, body);
+    needs.points += points;
+    // what is released lies as a sheet in the box around it, of the blocks that its area takes
+    if (body.release) {
+      const auto& [x, y, z] = Shape<3>::cells;
+      const double sheet = scene.terrain->release->volume() / std::pow(scene.h, 3);
+      own = std::min(own, 2.0 * sheet / (x * z) + sheet / (x * y * z));
+      around = std::min(around, 3.0 * own);
+    }
     const double field_bytes =
         scene.storage == Storage::single_precision ? sizeof(float) : sizeof(double);
     const double fields = static_cast<double>(
         Layout<dim>::state + std::max(std::size_t{4}, find_law(body.law).state.size()) +
         (body.restitution ? PointsOf<dim>::force_components : std::size_t{0}) +
         (scene.transfer == Transfer::relaxed ? Layout<dim>::gradient : std::size_t{0}));
+    const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
+    const double slots = body.release
+                             ? points
+                             : static_cast<double>(lattice[0]) * static_cast<double>(lattice[1]) *
+                                   static_cast<double>(lattice[2]);
     slots_bytes += slots * (fields * field_bytes + sizeof(std::int64_t));
     point_blocks += own;
     node_blocks += around;

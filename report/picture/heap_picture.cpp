@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "report/picture/terrain_picture.hpp"
 #include "report/plot/figure.hpp"
 
 namespace repose::report {
@@ -130,6 +131,10 @@ void write_heap_picture(const std::filesystem::path& path, const HeapPicture& pi
 bool draw_final_picture(const input::SceneFile& file, const mpm::Simulation& simulation,
                         const std::filesystem::path& path) {
   const mpm::Scene& scene = file.scene;
+  if (scene.terrain) {
+    draw_terrain_picture(simulation, path);
+    return true;
+  }
   mpm::Simulation::Snapshot shot = simulation.snapshot(file.stress);
   double plane = 0.0;
   std::string title = fmt::format("{} at {:.4g} s", scene.name, simulation.time());

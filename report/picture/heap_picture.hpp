@@ -32,7 +32,8 @@ struct HeapPicture {
 void write_heap_picture(const std::filesystem::path& path, const HeapPicture& picture);
 
 /// The points of a simulation as they are, coloured by what the scene's [output] asks for; in space
-/// a slice of one cell's width. False if there is nothing in it. Errors: PlotError, IoError.
+/// a slice of one cell's width, over a terrain a map (terrain_picture.hpp). False if there is
+/// nothing in it. Errors: PlotError, IoError.
 bool draw_final_picture(const input::SceneFile& scene, const mpm::Simulation& simulation,
                         const std::filesystem::path& path);
 

@@ -1,5 +1,6 @@
 #include "report/plot/figure.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -92,6 +93,15 @@ Axes& Axes::scatter(std::span<const double> xs, std::span<const double> ys,
   crosses.colour = Colour::vermillion;
   crosses.marker = Marker::cross;
   return points(fmt::format("without a value: {}", bad.x.size()), bad.x, bad.y, crosses);
+}
+
+Axes& Axes::shade(std::span<const double> xs, std::span<const double> ys,
+                  std::span<const double> greys) {
+  check_sizes(xs.size(), {ys.size(), greys.size()}, "shade");
+  add(SeriesKind::shade, "", xs, ys, {});
+  for (const double grey : greys)
+    series_.back().value.push_back(std::round(255.0 * std::clamp(grey, 0.0, 1.0)));
+  return *this;
 }
 
 Axes& Axes::arrow(Arrow arrow) {

@@ -58,7 +58,7 @@ struct ScatterStyle {
   std::optional<double> diameter{};
 };
 
-enum class SeriesKind { line, dashed, points, band, scatter };
+enum class SeriesKind { line, dashed, points, band, scatter, shade };
 
 /// One series as it is kept by Axes; the last two are empty where the kind has no use for them.
 struct Series {
@@ -74,7 +74,8 @@ struct Arrow {
   std::string label;  // beside its tail
 };
 
-/// One panel. Series are drawn in the order given, bands before all others. A name that is empty
+/// One panel. Series are drawn in the order given, shades and then bands before all
+/// others. A name that is empty
 /// keeps a series out of the legend. Lines break where a value is not finite, or not positive on a
 /// logarithmic axis, and points are left out; the figure's subtitle then says how many.
 /// Every adder throws std::invalid_argument if its arrays differ in length.
@@ -99,6 +100,10 @@ class Axes {
   /// legend.
   Axes& scatter(std::span<const double> xs, std::span<const double> ys,
                 std::span<const double> values, Axis colours, ScatterStyle style = {});
+  /// A grey picture below everything else, on cells of a lattice that (xs, ys) are the middles of,
+  /// row by row; 0 is black, 1 white.
+  Axes& shade(std::span<const double> xs, std::span<const double> ys,
+              std::span<const double> greys);
   Axes& arrow(Arrow arrow);
 
   const std::vector<Series>& series() const { return series_; }

@@ -136,7 +136,7 @@ PanelView view_of(const Axes& axes, const Figure& figure) {
     xs.include(series.x);
     ys.include(series.y);
     ys.include(series.upper);
-    values.include(series.value);
+    if (series.kind != SeriesKind::shade) values.include(series.value);
   }
   constexpr double room = 0.05;
   PanelView panel;

@@ -144,7 +144,9 @@ Block block_of(const Series& series, const Axes& axes, const PanelView& panel) {
     fmt::format_to(out, "{:.9g} {:.9g}", handed(series.x[i], panel.x),
                    handed(series.y[i], panel.y));
     if (!series.upper.empty()) fmt::format_to(out, " {:.9g}", handed(series.upper[i], panel.y));
-    if (!series.value.empty())
+    if (series.kind == SeriesKind::shade)
+      fmt::format_to(out, " {}", series.value[i]);
+    else if (!series.value.empty())
       fmt::format_to(out, " {:.9g}", handed(series.value[i], *panel.colours));
     block.text += '\n';
   }
@@ -238,6 +240,8 @@ std::string drawn_as(const Series& series, const PanelView& panel, std::string_v
       return fmt::format("using 1:2 with points {} lc rgb '{}'", markers(Marker::circle), colour);
     case SeriesKind::scatter:
       break;
+    case SeriesKind::shade:
+      return "using 1:2:3:3:3 with rgbimage";
     case SeriesKind::line:
     case SeriesKind::dashed: {
       const std::string line = fmt::format("lw {:.2f} lc rgb '{}'{}", style.width_px, colour,
@@ -297,21 +301,23 @@ void write_panel(std::string& out, const Axes& axes, const PanelView& panel,
                        gnuplot_text(axes.title, true), screen.at(area.left, area.top - 16.0), ink,
                        panel_title_px);
 
-  std::array<std::string, 2> layers;  // bands, and everything else upon them
+  std::array<std::string, 3> layers;  // shades, bands, and everything else upon them
   std::size_t automatic = 0;
   for (std::size_t i = 0; i < axes.series().size(); ++i) {
     const Series& series = axes.series()[i];
-    const bool uses_cycle =
-        series.style.colour == Colour::automatic && series.kind != SeriesKind::scatter;
+    const bool uses_cycle = series.style.colour == Colour::automatic &&
+                            series.kind != SeriesKind::scatter && series.kind != SeriesKind::shade;
     const Colour colour = uses_cycle ? cycle_colour(automatic++) : series.style.colour;
     if (blocks[i].drawn == 0) continue;
     out += fmt::format("$d{} << END_OF_DATA\n{}END_OF_DATA\n", i, blocks[i].text);
-    std::string& layer = layers[series.kind == SeriesKind::band ? 0 : 1];
+    std::string& layer = layers[series.kind == SeriesKind::shade  ? 0
+                                : series.kind == SeriesKind::band ? 1
+                                                                  : 2];
     layer +=
         fmt::format("$d{} {} {}, ", i, drawn_as(series, panel, hex(colour), blocks[i].drawn == 1),
                     series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name));
   }
-  const std::string plots = layers[0] + layers[1];
+  const std::string plots = layers[0] + layers[1] + layers[2];
   // A panel without any data still shows its axes.
   out += "plot " + (plots.empty() ? "NaN notitle" : plots.substr(0, plots.size() - 2)) + "\n";
 }

@@ -39,6 +39,7 @@ class FreePlace {
         height_(height) {}
 
   void add(const Series& series) {
+    if (series.kind == SeriesKind::shade) return;
     const bool connected = series.kind != SeriesKind::points && series.kind != SeriesKind::scatter;
     add_curve(series.x, series.y, connected);
     if (series.kind == SeriesKind::band) {

@@ -17,6 +17,7 @@
 #include "study/run/finished_result.hpp"
 #include "study/run/output_schedule.hpp"
 #include "study/run/run_record.hpp"
+#include "study/run/terrain_result.hpp"
 
 namespace repose::study {
 namespace {
@@ -330,6 +331,7 @@ io::ExitCode Run::finish() {
   if (lost != 0) return stop_at_failure(fmt::format("{} points have been lost", lost));
   tell_warnings();
   write_profile();
+  if (scene_.terrain) write_terrain_maps(folder_, simulation_);
   const bool drawn = write_picture();
   write_summary("done", "");
   folder_.seal();
@@ -339,16 +341,23 @@ io::ExitCode Run::finish() {
   voice_.event(
       {{"event", "end"}, {"status", "done"}, {"exit", 0}, {"folder", folder_.path().string()}});
   std::string files = drawn ? "final.svg, series.csv, profile.csv" : "series.csv, profile.csv";
+  if (scene_.terrain)
+    files +=
+        ", largest_depth.asc, largest_speed.asc, arrival_time.asc, deposit.asc, "
+        "outlines.geojson";
   for (const auto* const frames : {&frames_, &grid_frames_})
     if (*frames) files += fmt::format(", frames/{}", (*frames)->series_path().filename().string());
-  voice_.say(fmt::format(
-      "{}: done in {}, {} steps, {:.1f} Mpoint-steps/s\n"
-      "  front {:.4g} m, height {:.4g} m, kinetic energy {:.2g} {}, energy error {:.2g} %\n"
-      "  {}: {}\n",
-      scene_.name, io::duration_text(wall), last.step,
-      static_cast<double>(simulation_.point_steps()) / wall / 1e6, last.front_m, last.height_m,
-      last.kinetic_J_per_m, scene_.dimensions() == 2 ? "J/m" : "J",
-      100.0 * record_.energy_error(last), folder_.path().string(), files));
+  const std::string extent =
+      scene_.terrain ? flow_extent(simulation_)
+                     : fmt::format("front {:.4g} m, height {:.4g} m", last.front_m, last.height_m);
+  voice_.say(
+      fmt::format("{}: done in {}, {} steps, {:.1f} Mpoint-steps/s\n"
+                  "  {}, kinetic energy {:.2g} {}, energy error {:.2g} %\n"
+                  "  {}: {}\n",
+                  scene_.name, io::duration_text(wall), last.step,
+                  static_cast<double>(simulation_.point_steps()) / wall / 1e6, extent,
+                  last.kinetic_J_per_m, scene_.dimensions() == 2 ? "J/m" : "J",
+                  100.0 * record_.energy_error(last), folder_.path().string(), files));
   return io::ExitCode::done;
 }
 

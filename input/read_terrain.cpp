@@ -1,0 +1,229 @@
+#include "input/read_terrain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "input/key_info.hpp"
+#include "input/shipped_input.hpp"
+#include "input/toml_reader.hpp"
+#include "input/toml_text.hpp"
+#include "io/atomic_file.hpp"
+#include "io/fingerprint.hpp"
+#include "io/table_error.hpp"
+
+namespace repose::input {
+namespace {
+
+namespace fs = std::filesystem;
+using File = mpm::Terrain::File;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << in.rdbuf();
+  if (!in || fs::is_directory(file)) throw io::IoError(file, "cannot be read");
+  return std::move(bytes).str();
+}
+
+/// The bytes of a map that a key names, beside the scene's file or one of those that come with
+/// repose; its name becomes one that holds from anywhere. Nothing, reported, if there is none.
+std::optional<std::string> read_map(TomlReader& table, std::string_view key, File& file) {
+  const Origin origin = table.file().origin(table.path_of(key));
+  fs::path path = file.name;
+  if (!origin.is_override() && path.is_relative())
+    path = fs::path(origin.source).parent_path() / path;
+  std::string bytes;
+  if (fs::exists(path)) {
+    try {
+      bytes = bytes_of(path);
+    } catch (const io::IoError& error) {
+      table.report(key, error.what());
+      return {};
+    }
+    file.name = fs::absolute(path).lexically_normal().string();
+  } else if (const auto shipped = shipped_map(file.name)) {
+    bytes = *shipped;
+  } else {
+    const std::string near = similar_file(path);
+    table.report(key, fmt::format("{}: there is no such file{}", path.string(),
+                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+    return {};
+  }
+  const std::string content = io::fingerprint_of(bytes);
+  if (!file.content.empty() && file.content != content) {
+    table.report(key, fmt::format("{}: this is not the file that the scene was made with (its "
+                                  "content is {}, and was {})",
+                                  path.string(), content, file.content));
+    return {};
+  }
+  file.content = content;
+  return bytes;
+}
+
+/// What parse(bytes, name) makes of a map; its complaint is reported.
+template <class Parse>
+auto parsed(TomlReader& table, std::string_view key, File& file, Parse&& parse)
+    -> std::optional<decltype(parse(std::string(), std::string()))> {
+  const std::optional<std::string> bytes = read_map(table, key, file);
+  if (!bytes) return {};
+  try {
+    return parse(*bytes, file.name);
+  } catch (const io::TableError& error) {
+    table.report(key, error.what());
+    return {};
+  }
+}
+
+/// Reports the first cell without data, or below `least`.
+bool is_whole(TomlReader& table, std::string_view key, const File& file, const io::Raster& map,
+              double least) {
+  const auto gap =
+      std::find_if(map.values.begin(), map.values.end(), [&](double x) { return !(x >= least); });
+  if (gap == map.values.end()) return true;
+  const auto place = static_cast<std::size_t>(gap - map.values.begin());
+  const std::string where = fmt::format("{}: row {}, column {} of the map", file.name,
+                                        place / map.columns + 1, place % map.columns + 1);
+  table.report(key, std::isnan(*gap)
+                        ? fmt::format("{} has no data; gdal_fillnodata.py closes gaps, "
+                                      "gdal_translate -projwin cuts them off",
+                                      where)
+                        : fmt::format("{} is {}, and must be >= {}", where, *gap, least));
+  return false;
+}
+
+void ground_keys(Keys& keys, mpm::Terrain& terrain) {
+  File& file = terrain.ground_file;
+  keys.text(
+      {"ground", "m", "elevations, an ESRI ASCII grid: a path seen from this file", {}, required},
+      file.name);
+  keys.text({"ground_content", "-",
+             "fingerprint of its bytes, written by repose: another file is refused"},
+            file.content);
+  TomlReader* const table = keys.reader();
+  if (table == nullptr || file.name.empty()) return;
+  if (auto map = parsed(*table, "ground", file, io::parse_esri_grid))
+    if (is_whole(*table, "ground", file, *map, -HUGE_VAL)) terrain.ground_map = std::move(*map);
+  std::error_code ignored;
+  const fs::path crs = fs::path(file.name).replace_extension(".prj");
+  if (fs::exists(crs, ignored)) terrain.crs = bytes_of(crs);
+}
+
+void release_keys(Keys& keys, mpm::Terrain& terrain) {
+  File& file = terrain.release_file;
+  keys.text({"release", "m",
+             "what a body with shape = \"release\" is: vertical depths, an ESRI ASCII grid, or "
+             "regions, polygons in a .geojson file"},
+            file.name);
+  keys.text(Key{"release_content", "-", "fingerprint of its bytes, written by repose"}.only_if(
+                !file.name.empty() || keys.describes(), "a content without a release"),
+            file.content);
+  const bool regions =
+      fs::path(file.name).extension() == ".geojson" || fs::path(file.name).extension() == ".json";
+  keys.number(Key{"release_depth", "m", "vertical depth of regions that have no property \"depth\"",
+                  positive}
+                  .only_if(regions || keys.describes(), "only a release of regions has one depth"),
+              terrain.release_depth);
+  TomlReader* const table = keys.reader();
+  if (table == nullptr || file.name.empty()) return;
+  if (regions) {
+    auto read = parsed(*table, "release", file, io::parse_geojson);
+    if (!read) return;
+    const bool complete = terrain.release_depth ||
+                          std::all_of(read->begin(), read->end(),
+                                      [](const io::Region& r) { return r.depth.has_value(); });
+    if (!complete)
+      table->report("release_depth",
+                    "a region has no property \"depth\": terrain.release_depth "
+                    "gives that of all that have none");
+    terrain.release_map = std::move(*read);
+  } else if (auto map = parsed(*table, "release", file, io::parse_esri_grid)) {
+    for (double& depth : map->values)
+      if (std::isnan(depth)) depth = 0.0;
+    if (!is_whole(*table, "release", file, *map, 0.0)) return;
+    if (std::none_of(map->values.begin(), map->values.end(), [](double d) { return d > 0.0; }))
+      table->report("release", fmt::format("{}: no cell of the map has a depth", file.name));
+    else
+      terrain.release_map = std::move(*map);
+  }
+}
+
+/// A coefficient, or a map of it.
+void read_friction(TomlReader& table, mpm::Terrain& terrain) {
+  const toml::node& given = *table.get("friction");
+  terrain.contact = mpm::Surface::Contact::friction;
+  if (!given.is_string()) {
+    terrain.friction =
+        table.number({"friction", "-", "Coulomb coefficient", Range{0.0, 1e3, false, false}, {}});
+    return;
+  }
+  File& file = terrain.friction_file;
+  file.name = given.as_string()->get();
+  auto map = parsed(table, "friction", file, io::parse_esri_grid);
+  if (!map || !is_whole(table, "friction", file, *map, 0.0)) return;
+  const io::Raster& ground = terrain.ground_map;
+  const double slack = map->cell;
+  if (ground.columns > 0 &&
+      (map->west > ground.west + slack || map->south > ground.south + slack ||
+       map->east() < ground.east() - slack || map->north() < ground.north() - slack))
+    table.report("friction",
+                 fmt::format("{}: the map does not cover that of the ground", file.name));
+  terrain.friction_raster = std::move(*map);
+}
+
+void contact_keys(Keys& keys, mpm::Terrain& terrain) {
+  using Contact = mpm::Surface::Contact;
+  static constexpr std::array<std::string_view, 2> kinds{"no_slip", "slip"};
+  static const KeyInfo info = [] {
+    KeyInfo any, coefficient, map;
+    any.kind = ValueKind::any_of;
+    coefficient.kind = ValueKind::number;
+    map.kind = ValueKind::text;
+    any.below = {coefficient, map};
+    return any;
+  }();
+  TomlReader* const table = keys.reader();
+  bool rubs = terrain.contact == Contact::friction;
+  keys.text(
+      Key{"friction_content", "-", "fingerprint of the map's bytes, written by repose"}.only_if(
+          table != nullptr || keys.describes() || terrain.friction_raster.has_value(), ""),
+      terrain.friction_file.content);
+  keys.value(
+      Key{"friction", "-",
+          "Coulomb coefficient of a contact that may part, or an ESRI ASCII grid of it; or a kind"}
+          .only_if(table != nullptr || keys.describes() || rubs, ""),
+      [&](TomlReader& reader) { read_friction(reader, terrain); },
+      [&] {
+        return terrain.friction_raster ? toml_string(terrain.friction_file.name)
+                                       : toml_number(terrain.friction);
+      },
+      info);
+  rubs = terrain.contact == Contact::friction;
+  if (table != nullptr && rubs && table->has("kind"))
+    table->report("kind",
+                  "give either kind or friction: a ground with friction slips where it must");
+  auto kind = rubs ? Contact::no_slip : terrain.contact;
+  keys.choice(Key{"kind", "-", "of contact without friction, which does not part"}.only_if(
+                  !rubs || table != nullptr, ""),
+              kinds, kind);
+  if (!rubs) terrain.contact = kind;
+}
+
+}  // namespace
+
+void terrain_keys(Keys& keys, mpm::Terrain& terrain) {
+  ground_keys(keys, terrain);
+  release_keys(keys, terrain);
+  contact_keys(keys, terrain);
+  keys.number({"base", "m", "elevation of the box's floor; three cells below the lowest ground"},
+              terrain.base);
+  keys.number({"least_depth", "m",
+               "from which on the maps of the result count a place as reached; a quarter of a cell",
+               positive},
+              terrain.least_depth);
+}
+
+}  // namespace repose::input
