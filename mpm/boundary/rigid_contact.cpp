@@ -69,14 +69,15 @@ struct Lacks {
   Vector<dim> odd{}, even{};
   bool parts = false;
 };
+/// Of a ghost's velocity and that in front, both relative to the surface's; `even`: AV.
 template <int dim>
 Lacks<dim> lacks(Surface::Contact contact, double friction, const Vector<dim>& ghost,
-                 const Vector<dim>& front, double s, const Vector<dim>& normal,
-                 const Vector<dim>& of_surface) {
+                 const Vector<dim>& front, const Vector<dim>& even, double s,
+                 const Vector<dim>& normal) {
   Vector<dim> delta, difference;
   for (std::size_t i = 0; i < dim; ++i) {
-    delta[i] = ghost[i] - of_surface[i] + s * (front[i] - of_surface[i]);
-    difference[i] = ghost[i] - front[i];
+    delta[i] = ghost[i] + s * front[i];
+    difference[i] = ghost[i] - even[i];
   }
   const double delta_n = dot(delta, normal);
   if (contact == Surface::Contact::friction && !(delta_n < 0.0)) return {{}, {}, true};
@@ -101,6 +102,9 @@ const double reach = 2.0 * std::sqrt(static_cast<double>(dim)) + 0.5;
 
 /// Nodes up to this far in front of a surface are bound to it as those behind are [cells]
 constexpr double bound = 0.5;
+
+/// Most that A − I may be: beyond it a surface bends within the cells that should tell of it.
+constexpr double most_turn = 1.0;
 
 /// The nodes around the place that lies d in front of the surface over x, and their weights there.
 template <int dim>
@@ -188,6 +192,12 @@ std::vector<typename RigidContact<dim>::Geometry> RigidContact<dim>::geometry_of
       if (d >= farthest || all_free) break;
     }
     ghost.s = -at.distance / (d * h);
+    Position front = x;  // the donors' place
+    for (std::size_t i = 0; i < 3; ++i) front[i] += (d * h - at.distance) * at.normal[i];
+    const Bending bending = surface.bending_at(time, front, 0.5 * h);
+    for (std::size_t i = 0; i < dim; ++i)
+      for (std::size_t j = 0; j < dim; ++j)
+        ghost.turn[i][j] = std::clamp((at.distance - d * h) * bending[i][j], -most_turn, most_turn);
     for (std::size_t k = 0; k < corners.size(); ++k) {
       ghost.weight[k] = corners[k].weight;
       ghost.free[k] = free[k];
@@ -242,6 +252,7 @@ void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>&
       ghost.s = as_it_lies.s;
       ghost.friction = as_it_lies.friction;
       ghost.normal = as_it_lies.normal;
+      ghost.turn = as_it_lies.turn;
       const Position x = position_of<dim>(node_index<dim>(nb, ghost.place), h);
       ghost.velocity = along_axes<dim>(surface.velocity_at(time, x));
       ghost.weight = as_it_lies.weight;
@@ -281,18 +292,24 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
     ghost.per_borne = 1.0;
     double borne = 0.0;
     each_donor(ghost, [&](const Donor&, double w) { borne += w; });
-    const Vector<dim> own = velocity(ghost);
-    Vector<dim> front{};
+    Vector<dim> own = velocity(ghost), front{};
+    add(own, -1.0, ghost.velocity);
     if (borne > 1e-9) {
       ghost.per_borne = 1.0 / borne;
-      each_donor(ghost, [&](const Donor& donor, double w) { add(front, w, velocity(donor)); });
+      each_donor(ghost, [&](const Donor& donor, double w) {
+        add(front, w, velocity(donor));
+        add(front, -w, donor.velocity);
+      });
     } else {  // nothing in front of it that it could follow
       ghost.per_borne = 0.0;
       front = own;
     }
     const double s = ghost.per_borne > 0.0 ? ghost.s : 0.0;
+    Vector<dim> even = front;
+    if (ghost.per_borne > 0.0)
+      for (std::size_t i = 0; i < dim; ++i) even[i] += dot(ghost.turn[i], front);
     const Lacks<dim> of =
-        lacks<dim>(surface.contact, ghost.friction, own, front, s, ghost.normal, ghost.velocity);
+        lacks<dim>(surface.contact, ghost.friction, own, front, even, s, ghost.normal);
     ghost.acts = !of.parts;
     if (!ghost.acts) continue;
     ghost.odd = of.odd;

@@ -8,11 +8,14 @@
 /// ran 7 to 13 % too fast.) The place at φ = d over a ghost lies among 2^dim nodes in front, the
 /// ghost's donors, with the mean velocity V = Σ w_j v_j; d is the least distance >= −φ_g, in
 /// eighths of a cell, at which none of them is a ghost. With v relative to the surface's own motion
-/// and s = −φ_g/d, a field that is linear across the surface obeys
+/// at each place and s = −φ_g/d, a field that is linear across the surface obeys
 ///   odd,  v_g = −sV:  it vanishes on the surface (all components: no slip; the normal one: slip),
-///   even, v_g =   V:  its normal derivative does (the tangential ones: slip).
+///   even, v_g =  AV:  no shear acts on it (the tangential ones: slip), A = I + (φ_g − d)S.
+/// S = ∇n is how the surface bends. Where v·n = 0 all along it, n·∂_t v = −v·St, so that the shear
+/// rate ½(∂_n v_t + n·∂_t v) vanishes for ∂_n v = Sv: what slides along a bend turns with it. (With
+/// A = I it was sheared by the angle that it had turned: a block on a cycloid came to rest.)
 ///
-/// What the ghost lacks, δ = v_g + sV (odd) or v_g − V (even), is taken from the ghost and its
+/// What the ghost lacks, δ = v_g + sV (odd) or v_g − AV (even), is taken from the ghost and its
 /// donors as the masses share it, by Gauss' principle of least constraint with lumped masses:
 ///   odd:   Δv_j = −Σ_g m_g w s δ/(m_j + Σ_g m_g w s²),   Δv_g = −δ − sΣ w Δv_j,
 ///   even:  Δv_j =  Σ_g m_g w δ/(m_j + Σ_g m_g w),        Δv_g = −δ +  Σ w Δv_j;
@@ -64,6 +67,7 @@ class RigidContact {
     std::int32_t place = 0;  ///< in its block
     double s = 0.0, friction = 0.0;
     std::array<double, dim> normal{};
+    std::array<std::array<double, dim>, dim> turn{};  ///< A − I
     std::array<typename GridOf<dim>::Index, std::size_t{1} << dim> donor{};
     std::array<double, std::size_t{1} << dim> weight{};
     std::array<bool, std::size_t{1} << dim> free{};  ///< the donor is no ghost itself
@@ -72,6 +76,7 @@ class RigidContact {
     std::int32_t block, place;
     double s, friction;
     std::array<double, dim> normal, velocity;               ///< velocity of the surface
+    std::array<std::array<double, dim>, dim> turn;          ///< A − I
     std::array<std::int32_t, std::size_t{1} << dim> donor;  ///< into donors; −1: none
     std::array<double, std::size_t{1} << dim> weight;
     // of the step: what is lacking, and 1/Σ weight over donors that bear mass

@@ -43,15 +43,9 @@ HeightMap::HeightMap(std::array<double, 2> first, double spacing, std::size_t co
   const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
   lowest_ = *lowest;
   highest_ = *highest;
-  double along_x = 0.0, along_z = 0.0;
   for (std::size_t k = 0; k < rows; ++k)
-    for (std::size_t i = 0; i < columns; ++i) {
-      const double y = heights[k * columns + i];
-      heights_[(k + 2) * columns_ + i + 2] = y;
-      if (i > 0) along_x = std::max(along_x, std::abs(y - heights[k * columns + i - 1]));
-      if (k > 0) along_z = std::max(along_z, std::abs(y - heights[(k - 1) * columns + i]));
-    }
-  steepest_ = 1.5 * 1.25 * std::hypot(along_x, along_z) / spacing;
+    for (std::size_t i = 0; i < columns; ++i)
+      heights_[(k + 2) * columns_ + i + 2] = heights[k * columns + i];
   /// Two nodes on either side of a line of `count` that begins at `start`: straight on, then level.
   const auto extend = [&](std::size_t start, std::size_t count, std::size_t stride) {
     const auto node = [&](std::size_t i) -> double& { return heights_[start + i * stride]; };
@@ -63,6 +57,12 @@ HeightMap::HeightMap(std::array<double, 2> first, double spacing, std::size_t co
   };
   for (std::size_t k = 2; k < rows + 2; ++k) extend(k * columns_, columns, 1);
   for (std::size_t i = 0; i < columns_; ++i) extend(i, rows, columns_);
+  double along_x = 0.0, along_z = 0.0;
+  for (std::size_t n = 0; n < heights_.size(); ++n) {
+    if (n % columns_ > 0) along_x = std::max(along_x, std::abs(heights_[n] - heights_[n - 1]));
+    if (n >= columns_) along_z = std::max(along_z, std::abs(heights_[n] - heights_[n - columns_]));
+  }
+  steepest_ = 1.5 * 1.25 * std::hypot(along_x, along_z) / spacing;
 }
 
 HeightMap::Sample HeightMap::at(double x, double z) const {

@@ -191,6 +191,28 @@ bool holds(const Solid& solid, const Position& x) {
   return nearest(solid, x).distance < 0.0;
 }
 
+Bending bending(const Solid& solid, const Position& x, double over) {
+  Bending S{};
+  if (const auto* const ball = std::get_if<Ball>(&solid.shape)) {
+    // φ = r − R: S = (I − n⊗n)/r
+    const Nearest at = nearest(solid, x);
+    const double r = std::abs(at.distance + (solid.hollow ? -ball->radius : ball->radius));
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        S[i][j] = (solid.hollow ? -1.0 : 1.0) *
+                  ((i == j ? 1.0 : 0.0) - at.normal[i] * at.normal[j]) / std::max(r, 1e-300);
+  } else if (std::holds_alternative<Ground>(solid.shape)) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      Position ahead = x, behind = x;
+      ahead[j] += over;
+      behind[j] -= over;
+      const Position n = nearest(solid, ahead).normal, m = nearest(solid, behind).normal;
+      for (std::size_t i = 0; i < 3; ++i) S[i][j] = (n[i] - m[i]) / (2.0 * over);
+    }
+  }
+  return S;
+}
+
 bool Surface::moves() const {
   return (spin != 0.0 || velocity != std::array<double, 3>{}) && stops > starts;
 }
@@ -222,6 +244,20 @@ bool Surface::is_beyond_at(double time, const Position& x, double radius) const 
 
 bool Surface::holds_at(double time, const Position& x) const {
   return holds(solid, at_start(time, x));
+}
+
+Bending Surface::bending_at(double time, const Position& x, double over) const {
+  const Bending start = bending(solid, at_start(time, x), over);
+  const double t = moves() ? moved_for(time) : 0.0;
+  if (t == 0.0 || spin == 0.0) return start;
+  const double c = std::cos(spin * t), s = std::sin(spin * t);
+  const std::array<std::array<double, 3>, 3> R{{{c, -s, 0.0}, {s, c, 0.0}, {0.0, 0.0, 1.0}}};
+  Bending turned{};  // R S Rᵀ
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t l = 0; l < 3; ++l) turned[i][j] += R[i][k] * start[k][l] * R[j][l];
+  return turned;
 }
 
 double Surface::friction_at(const Position& x) const {

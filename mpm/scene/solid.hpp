@@ -68,6 +68,11 @@ bool is_beyond(const Solid& solid, const Position& x, double radius);
 /// Whether x lies in the rigid part; quicker than nearest().
 bool holds(const Solid& solid, const Position& x);
 
+/// How the normal turns from place to place: dn = S dx, S_ij = ∂²φ/∂x_i∂x_j [1/m]. 0 of planes and
+/// polygons; of ground, over a length of `over` to either side.
+using Bending = std::array<std::array<double, 3>, 3>;
+Bending bending(const Solid& solid, const Position& x, double over);
+
 /// A rigid surface, at rest or moving as one.
 struct Surface {
   enum class Contact {
@@ -93,6 +98,7 @@ struct Surface {
   bool is_beyond_at(double time, const Position& x, double radius) const;
   bool holds_at(double time, const Position& x) const;
   double friction_at(const Position& x) const;
+  Bending bending_at(double time, const Position& x, double over) const;
   std::array<double, 3> velocity_at(double time, const Position& x) const;
   /// Its outline in the plane z at a time, closed, within the rectangle from `low` to `high`; empty
   /// where there is none of it. A hollow one has the outline of its hole.
