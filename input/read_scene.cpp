@@ -140,7 +140,7 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
   }
   const Key size =
       Key{"size", "m", "width and height of the box, in space also its depth", positive, required}
-          .only_if(true, "with [terrain] it may be left to the map");
+          .only_if(true, "required; with [terrain] it may be left to the map");
   if (scene.terrain && keys.reader() != nullptr && !keys.reader()->has("size"))
     keys.reader()->expect("size");
   else
@@ -356,7 +356,7 @@ void scene_keys(Keys& keys, SceneFile& file) {
   }
   Key domain{"domain", "-", "the box and its edges", {}, required};
   if (scene.terrain) domain.presence = Presence::defaulted;
-  keys.table(domain.only_if(true, "with [terrain] it may be left to the map"),
+  keys.table(domain.only_if(true, "required; with [terrain] it may be left to the map"),
              [&](Keys& below) { domain_keys(below, scene); });
   keys.tables(
       {"body", "-", "a block of material", {}, required}, scene.bodies.size(),

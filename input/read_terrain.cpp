@@ -197,6 +197,7 @@ void contact_keys(Keys& keys, mpm::Terrain& terrain) {
           .only_if(table != nullptr || keys.describes() || rubs, ""),
       [&](TomlReader& reader) { read_friction(reader, terrain); },
       [&] {
+        if (!rubs) return std::string();
         return terrain.friction_raster ? toml_string(terrain.friction_file.name)
                                        : toml_number(terrain.friction);
       },
@@ -218,7 +219,7 @@ void terrain_keys(Keys& keys, mpm::Terrain& terrain) {
   ground_keys(keys, terrain);
   release_keys(keys, terrain);
   contact_keys(keys, terrain);
-  keys.number({"base", "m", "elevation of the box's floor; three cells below the lowest ground"},
+  keys.number({"base", "m", "elevation of the box's floor; four cells below the lowest ground"},
               terrain.base);
   keys.number({"least_depth", "m",
                "from which on the maps of the result count a place as reached; a quarter of a cell",

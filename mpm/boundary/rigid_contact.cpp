@@ -242,7 +242,10 @@ void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>&
       anew = geometry_of(surface, nb, h, time);
     } else {
       const auto [found, is_new] = layer.geometry.try_emplace(nb.at);
-      if (is_new) found->second = geometry_of(surface, nb, h, time);
+      if (is_new) {
+        found->second = geometry_of(surface, nb, h, time);
+        cover(surface, layer, grid, nb);
+      }
       geometry = &found->second;
     }
     for (const Geometry& as_it_lies : *geometry) {
@@ -260,6 +263,62 @@ void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>&
         ghost.donor[k] = as_it_lies.free[k] ? donor(as_it_lies.donor[k]) : -1;
       layer.ghosts.push_back(ghost);
     }
+  }
+}
+
+/// The plane is that of the map's slope over a cell, raised by twice as much as the map is found to
+/// leave it at 25 places of the column and by a twentieth of a cell for what they do not show.
+template <int dim>
+void RigidContact<dim>::cover(const Surface& surface, Layer& layer, const GridOf<dim>& grid,
+                              const NodeBlockOf<dim>& nb) {
+  if constexpr (dim == 3) {
+    const auto* const ground = std::get_if<Ground>(&surface.solid.shape);
+    if (ground == nullptr || surface.moves() || surface.solid.hollow) return;
+    const HeightMap& map = *ground->map;
+    const auto columns = static_cast<std::size_t>(grid.cells()[0]);
+    const double h = grid.h(), nan = std::nan("");
+    if (layer.lids.empty())
+      layer.lids.assign(columns * static_cast<std::size_t>(grid.cells()[2]), {nan, nan, nan});
+    const auto range = [&](std::size_t axis) {
+      const int first = GridOf<dim>::first(axis, nb.at[axis]);
+      return std::pair{std::max(first, 0),
+                       std::min(first + Shape<dim>::cells[axis], grid.cells()[axis])};
+    };
+    const auto [from_x, to_x] = range(0);
+    const auto [from_z, to_z] = range(2);
+    for (int k = from_z; k < to_z; ++k)
+      for (int i = from_x; i < to_x; ++i) {
+        auto& lid = layer.lids[static_cast<std::size_t>(k) * columns + static_cast<std::size_t>(i)];
+        if (!std::isnan(lid.height)) continue;
+        const double x = h * (i + 0.5), z = h * (k + 0.5), half = 0.5 * h;
+        lid.slope_x = (map.height(x + half, z) - map.height(x - half, z)) / h;
+        lid.slope_z = (map.height(x, z + half) - map.height(x, z - half)) / h;
+        const double middle = map.height(x, z);
+        double most = 0.0;
+        for (int b = -2; b <= 2; ++b)
+          for (int a = -2; a <= 2; ++a) {
+            const double dx = 0.5 * half * a, dz = 0.5 * half * b;
+            most = std::max(
+                most, map.height(x + dx, z + dz) - middle - lid.slope_x * dx - lid.slope_z * dz);
+          }
+        lid.height = middle + 2.0 * most + 0.05 * h;
+      }
+  }
+}
+
+template <int dim>
+bool RigidContact<dim>::is_above_lid(std::size_t surface, const std::array<double, dim>& x) const {
+  if constexpr (dim == 3) {
+    if (surface >= layers_.size() || layers_[surface].lids.empty()) return false;
+    const double i = std::floor(x[0] * per_h_), k = std::floor(x[2] * per_h_);
+    if (!(i >= 0.0 && i < cells_[0] && k >= 0.0 && k < cells_[2])) return false;
+    const auto& lid =
+        layers_[surface].lids[static_cast<std::size_t>(k) * static_cast<std::size_t>(cells_[0]) +
+                              static_cast<std::size_t>(i)];
+    return x[1] > lid.height + lid.slope_x * (x[0] - h_ * (i + 0.5)) +
+                      lid.slope_z * (x[2] - h_ * (k + 0.5));
+  } else {
+    return false;
   }
 }
 
@@ -362,6 +421,9 @@ template <int dim>
 WallEffect RigidContact<dim>::apply(GridOf<dim>& grid, double time, bool sorted, double& work) {
   WallEffect effect;
   layers_.resize(surfaces_.size());
+  h_ = grid.h();
+  per_h_ = 1.0 / h_;
+  for (std::size_t axis = 0; axis < dim; ++axis) cells_[axis] = grid.cells()[axis];
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     if (sorted || surfaces_[k].moves()) build(surfaces_[k], layers_[k], grid, time);
     effect += apply(surfaces_[k], layers_[k], grid, work);
@@ -372,8 +434,9 @@ WallEffect RigidContact<dim>::apply(GridOf<dim>& grid, double time, bool sorted,
 template <int dim>
 bool RigidContact<dim>::keep_out(std::array<double, dim>& x, double time, double hair) const {
   bool moved = false;
-  for (const Surface& surface : surfaces_) {
-    if (!surface.holds_at(time, position_of<dim>(x))) continue;
+  for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    const Surface& surface = surfaces_[k];
+    if (is_above_lid(k, x) || !surface.holds_at(time, position_of<dim>(x))) continue;
     const Nearest at = surface.nearest_at(time, position_of<dim>(x));
     for (std::size_t i = 0; i < dim; ++i) x[i] += (hair - at.distance) * at.normal[i];
     moved = true;

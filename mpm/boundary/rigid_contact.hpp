@@ -87,6 +87,12 @@ class RigidContact {
   struct Layer {  ///< of one surface
     std::vector<Ghost> ghosts;
     std::vector<Donor> donors;
+    /// Of ground, above each column of cells (x first) a plane that nothing of it reaches: what is
+    /// above needs no look at the map. NaN where no block of nodes has been yet.
+    struct Lid {
+      double height, slope_x, slope_z;  ///< at the column's middle
+    };
+    std::vector<Lid> lids;
     /// By place of the block; of a surface at rest, for as long as the run lasts.
     std::map<std::array<std::int32_t, dim>, std::vector<Geometry>> geometry;
   };
@@ -94,10 +100,15 @@ class RigidContact {
   static std::vector<Geometry> geometry_of(const Surface& surface, const NodeBlockOf<dim>& block,
                                            double h, double time);
   static void build(const Surface& surface, Layer& layer, GridOf<dim>& grid, double time);
+  static void cover(const Surface& surface, Layer& layer, const GridOf<dim>& grid,
+                    const NodeBlockOf<dim>& block);
+  bool is_above_lid(std::size_t surface, const std::array<double, dim>& x) const;
   WallEffect apply(const Surface& surface, Layer& layer, GridOf<dim>& grid, double& work) const;
 
   std::vector<Surface> surfaces_;
   std::vector<Layer> layers_;
+  double h_ = 0.0, per_h_ = 0.0;  ///< of the grid [m], [1/m]
+  std::array<int, dim> cells_{};  ///< of the grid
 };
 
 }  // namespace repose::mpm

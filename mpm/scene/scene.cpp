@@ -84,7 +84,7 @@ void fit_to_terrain(Scene& scene) {
   const auto [lowest, highest] =
       std::minmax_element(terrain.ground_map.values.begin(), terrain.ground_map.values.end());
   const double h = scene.h;
-  if (!terrain.base) terrain.base = h * (std::floor(*lowest / h) - 3.0);
+  if (!terrain.base) terrain.base = h * (std::floor(*lowest / h) - 4.0);
   terrain.place();
   const double deepest = terrain.release ? terrain.release->deepest() : 0.0;
   const auto whole = [&](double length) { return h * std::floor(length / h + lattice_tolerance); };

@@ -189,7 +189,7 @@ void set_release(Body& body, const Terrain& terrain);
 
 /// Makes a box fit its terrain, which it places in it: what of the size is not given (0) is as much
 /// of the map as whole cells cover, and high enough for what is released; the floor, unless it is
-/// given, lies three cells below the lowest ground. Bodies are set to the release where they are
+/// given, lies four cells below the lowest ground. Bodies are set to the release where they are
 /// it.
 void fit_to_terrain(Scene& scene);
 
