@@ -60,10 +60,81 @@ void speed_key(Keys& keys, double& speed) {
   keys.number({"speed", "m/s", "of the wall along itself", {}, required}, speed);
 }
 
+constexpr std::array<std::string_view, 3> part_words{"no_slip", "slip", "open"};
+
+/// An end of a stretch of an edge: along it, in space of both its directions or of the first.
+void end_key(Keys& keys, std::string_view name, std::string_view doc, double absent,
+             std::array<double, 2>& end) {
+  KeyInfo info, one, two;
+  info.kind = ValueKind::any_of;
+  one.kind = ValueKind::number;
+  two.kind = ValueKind::number_list;
+  two.least = two.most = 2;
+  info.below = {one, two};
+  keys.value(
+      {name, "m", doc},
+      [&](TomlReader& table) {
+        if (table.get(name)->is_array())
+          end = table.pair({name, "m", doc, {}, {}});
+        else
+          end = {table.number({name, "m", doc, {}, {}}), absent};
+      },
+      [&] {
+        if (std::isfinite(end[1]))
+          return fmt::format("[{}, {}]", toml_number(end[0]), toml_number(end[1]));
+        return std::isfinite(end[0]) ? toml_number(end[0]) : std::string();
+      },
+      info);
+}
+
+void stretch_keys(Keys& keys, std::array<double, 2>& from, std::array<double, 2>& to) {
+  end_key(keys, "from", "where it begins along the edge; in space also [x, z]: in both directions",
+          -HUGE_VAL, from);
+  end_key(keys, "to", "where it ends", HUGE_VAL, to);
+}
+
+/// The keys of a part of an edge: one of kind, friction and speed.
+void part_keys(Keys& keys, Wall::Part& part) {
+  static constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open};
+  std::optional<std::size_t> kind;
+  std::optional<double> friction, speed;
+  if (part.kind == Wall::Kind::friction)
+    friction = part.friction;
+  else if (part.speed != 0.0)
+    speed = part.speed;
+  else
+    kind = std::find(kinds.begin(), kinds.end(), part.kind) - kinds.begin();
+  if (keys.reader() != nullptr || keys.describes()) kind.reset();
+  keys.word({"kind", "-", "of this part; or friction, or speed"}, part_words, kind);
+  keys.number({"friction", "-", "Coulomb coefficient", Range{0.0, 1e3, false, false}}, friction);
+  keys.number({"speed", "m/s", "of the wall along itself"}, speed);
+  stretch_keys(keys, part.from, part.to);
+  TomlReader* const table = keys.reader();
+  if (table == nullptr) return;
+  const int given = (table->has("kind") ? 1 : 0) + (table->has("friction") ? 1 : 0) +
+                    (table->has("speed") ? 1 : 0);
+  if (given != 1)
+    table->report(given == 0 ? "" : "kind",
+                  fmt::format("{} needs one of kind = \"no_slip\", \"slip\" or \"open\", "
+                              "friction = 0.4 and speed = 0.1",
+                              table->path()));
+  part.kind = friction ? Wall::Kind::friction : kind ? kinds[*kind] : Wall::Kind::no_slip;
+  part.friction = friction.value_or(0.0);
+  part.speed = speed.value_or(0.0);
+}
+
 }  // namespace
 
 Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   const toml::node& node = *table.get(key);
+  if (node.is_array() && key != "walls") {
+    Wall wall{Wall::Kind::parts};
+    for (const TomlReader& entry : table.tables(key, "parts of an edge")) {
+      ReadKeys keys(entry);
+      part_keys(keys, wall.parts.emplace_back());
+    }
+    return wall;
+  }
   if (node.is_table()) {
     const TomlReader given = table.table(key);
     ReadKeys keys(given);
@@ -85,9 +156,13 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   if (!node.is_string()) {
     table.report(key,
                  fmt::format("{} must be one of \"no_slip\", \"slip\", \"open\", \"periodic\", "
-                             "or a table such as {{ friction = 0.4 }} or {{ speed = 0.1 }}; "
+                             "or a table such as {{ friction = 0.4 }} or {{ speed = 0.1 }}{}; "
                              "got {}",
-                             table.path_of(key), describe(node)));
+                             table.path_of(key),
+                             key == "walls" ? ""
+                                            : ", or a list of parts such as "
+                                              "{ from = 0.4, to = 0.6, kind = \"open\" }",
+                             describe(node)));
     return fallback;
   }
   return {wall_kinds[table.choice(key, {wall_words.begin(), wall_words.end()}, 0)]};
@@ -95,7 +170,27 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
 
 namespace {
 
+std::string part_text(const Wall::Part& part) {
+  const auto end = [](std::string_view name, const std::array<double, 2>& at) {
+    if (std::isfinite(at[1]))
+      return fmt::format("{} = [{}, {}], ", name, toml_number(at[0]), toml_number(at[1]));
+    return std::isfinite(at[0]) ? fmt::format("{} = {}, ", name, toml_number(at[0])) : "";
+  };
+  const auto at = std::find(wall_kinds.begin(), wall_kinds.end(), part.kind) - wall_kinds.begin();
+  const std::string kind =
+      part.kind == Wall::Kind::friction ? fmt::format("friction = {}", toml_number(part.friction))
+      : part.speed != 0.0
+          ? fmt::format("speed = {}", toml_number(part.speed))
+          : fmt::format("kind = {}", toml_string(wall_words[static_cast<std::size_t>(at)]));
+  return fmt::format("{{ {}{}{} }}", end("from", part.from), end("to", part.to), kind);
+}
+
 std::string wall_text(const Wall& wall) {
+  if (wall.kind == Wall::Kind::parts) {
+    std::string text;
+    for (const Wall::Part& part : wall.parts) text += (text.empty() ? "" : ", ") + part_text(part);
+    return fmt::format("[{}]", text);
+  }
   if (wall.kind == Wall::Kind::friction)
     return fmt::format("{{ friction = {} }}", toml_number(wall.friction));
   if (wall.speed != 0.0) return fmt::format("{{ speed = {} }}", toml_number(wall.speed));
@@ -103,8 +198,9 @@ std::string wall_text(const Wall& wall) {
   return toml_string(wall_words[static_cast<std::size_t>(at)]);
 }
 
-const KeyInfo& wall_info() {
-  static const KeyInfo info = [] {
+/// `in_parts`: whether the edge may be given so.
+const KeyInfo& wall_info(bool in_parts) {
+  const auto info_of = [](bool parts) {
     KeyInfo any, word, friction, speed;
     any.kind = ValueKind::any_of;
     word.kind = ValueKind::word;
@@ -114,15 +210,23 @@ const KeyInfo& wall_info() {
     friction.below = describe_keys([&](Keys& keys) { friction_key(keys, x); });
     speed.below = describe_keys([&](Keys& keys) { speed_key(keys, x); });
     any.below = {word, friction, speed};
+    if (parts) {
+      KeyInfo list;
+      list.kind = ValueKind::tables;
+      Wall::Part part;
+      list.below = describe_keys([&](Keys& keys) { part_keys(keys, part); });
+      any.below.push_back(list);
+    }
     return any;
-  }();
-  return info;
+  };
+  static const KeyInfo whole = info_of(false), any = info_of(true);
+  return in_parts ? any : whole;
 }
 
 void wall_key(Keys& keys, std::string_view name, std::string_view doc, Wall& wall) {
   keys.value(
       {name, "-", doc}, [&](TomlReader& table) { wall = read_wall(table, name, wall); },
-      [&] { return wall_text(wall); }, wall_info());
+      [&] { return wall_text(wall); }, wall_info(true));
 }
 
 void domain_keys(Keys& keys, mpm::Scene& scene) {
@@ -144,7 +248,7 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
         // periodic walls are those across the flow; the top is then left as it is
         if (walls.kind != Wall::Kind::periodic) scene.top = walls;
       },
-      [] { return std::string(); }, wall_info());
+      [] { return std::string(); }, wall_info(false));
   wall_key(keys, "left", "edge at x = 0", scene.left);
   wall_key(keys, "right", "edge at the other end of x", scene.right);
   wall_key(keys, "top", "upper edge", scene.top);

@@ -161,7 +161,9 @@ void require_sound(const PointsOf<dim>& points, std::size_t body,
         const double cell = std::floor(points[F::x + a][s] / grid.h());
         const int first = GridOf<dim>::first(a, pb.at[a]);
         const auto closed = [](const Wall& wall) {
-          return wall.kind != Wall::Kind::open && wall.kind != Wall::Kind::periodic;
+          return wall.kind != Wall::Kind::open && wall.kind != Wall::Kind::periodic &&
+                 std::none_of(wall.parts.begin(), wall.parts.end(),
+                              [](const Wall::Part& part) { return part.kind == Wall::Kind::open; });
         };
         const bool inside = (cell >= 0.0 || !closed(walls.low(a))) &&
                             (cell <= grid.cells()[a] || !closed(walls.high(a)));

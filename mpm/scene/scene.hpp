@@ -3,6 +3,7 @@
 /// A scene in memory: what a scene file says, SI units, nothing computed yet.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,10 +23,42 @@ struct Wall {
     friction,  ///< unilateral Coulomb contact: no tension, |shear| <= friction × pressure
     open,      ///< material that crosses leaves the simulation and is counted as outflow
     periodic,  ///< left and right only, both: what crosses comes in on the other side
+    parts,     ///< one of the others in each of its parts
+    inflow,    ///< of a part where material comes in: never given, made of an Inflow
+  };
+  /// A stretch of an edge. Its ends along the edge: of floor and top x (in space and z), of left
+  /// and right y (and z), of near and far x and y.
+  struct Part {
+    Kind kind = Kind::slip;
+    double friction = 0.0;
+    double speed = 0.0;  ///< for Kind::inflow, across the edge and inwards [m/s]
+    std::array<double, 2> from{-HUGE_VAL, -HUGE_VAL}, to{HUGE_VAL, HUGE_VAL};  ///< [m]
   };
   Kind kind = Kind::slip;
-  double friction = 0.0;  ///< Coulomb coefficient, for Kind::friction
-  double speed = 0.0;     ///< of the wall along itself, +x or +y, for Kind::no_slip [m/s]
+  double friction = 0.0;      ///< Coulomb coefficient, for Kind::friction
+  double speed = 0.0;         ///< of the wall along itself, +x or +y, for Kind::no_slip [m/s]
+  std::vector<Part> parts{};  ///< for Kind::parts; the first that contains a place holds there
+};
+
+/// The edges by name: across x, y and z, the low one first.
+constexpr std::array<std::string_view, 6> edge_names{"left", "right", "floor",
+                                                     "top",  "near",  "far"};
+
+/// Material that comes in through an edge.
+struct Inflow {
+  std::string name;
+  std::size_t edge = 0;                                                      ///< of edge_names
+  std::array<double, 2> from{-HUGE_VAL, -HUGE_VAL}, to{HUGE_VAL, HUGE_VAL};  ///< as Wall::Part
+  std::size_t body = 0;                   ///< whose law and initial state it has
+  std::optional<double> speed;            ///< along the inward normal [m/s]; or:
+  std::optional<double> rate;             ///< mass per time [kg/s per m], in space [kg/s]
+  double starts = 0.0, stops = HUGE_VAL;  ///< [s]
+};
+
+/// A place that is looked at over time; or where the material point is that is followed.
+struct Probe {
+  std::string name;
+  std::array<double, 3> place{};  ///< [m]
 };
 
 /// A disc of points; with a hole, a ring. In space, the section of an upright cylinder.
@@ -116,11 +149,17 @@ struct Scene {
   Wall left{Wall::Kind::slip};
   Wall right{Wall::Kind::slip};
   Wall top{Wall::Kind::slip};
-  Wall near{Wall::Kind::slip};  ///< at z = 0, in space
-  Wall far{Wall::Kind::slip};   ///< at the other end of z
+  Wall near{Wall::Kind::slip};             ///< at z = 0, in space
+  Wall far{Wall::Kind::slip};              ///< at the other end of z
+  const Wall& edge(std::size_t k) const {  ///< k of edge_names
+    return *std::array{&left, &right, &floor, &top, &near, &far}[k];
+  }
 
   std::vector<Body> bodies;
   std::vector<Surface> surfaces;  ///< rigid; bodies are cut by them
+  std::vector<Inflow> inflows;
+  std::vector<Probe> probes;   ///< places
+  std::vector<Probe> tracers;  ///< the material points nearest to these places at the start
 
   double h = 0.0;           ///< cell size [m]
   int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16; in space a cube: 1, 8, 27

@@ -85,7 +85,11 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
 template <int dim>
 double Simulation::Impl<dim>::energy_bound() const {
   // the work of these has no bound
-  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
+  const auto drags = [](const Wall& wall) {
+    return wall.speed != 0.0 ||
+           std::any_of(wall.parts.begin(), wall.parts.end(),
+                       [](const Wall::Part& part) { return part.speed != 0.0; });
+  };
   if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
       drags(walls.right) || drags(walls.floor) || drags(walls.top) ||
       std::any_of(scene.surfaces.begin(), scene.surfaces.end(),

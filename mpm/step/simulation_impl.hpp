@@ -8,7 +8,7 @@
 
 #include "mpm/boundary/periodic.hpp"
 #include "mpm/boundary/rigid_contact.hpp"
-#include "mpm/boundary/walls.hpp"
+#include "mpm/boundary/wall_parts.hpp"
 #include "mpm/grid/grid.hpp"
 #include "mpm/step/implicit_viscosity.hpp"
 #include "mpm/step/ledger.hpp"

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "input/resolved_scene.hpp"
 #include "io/atomic_file.hpp"
 
 namespace repose::input {
@@ -110,6 +111,43 @@ TEST(ReadScene, walls_apply_to_three_edges_unless_one_is_named) {
   EXPECT_EQ(scene.left.kind, mpm::Wall::Kind::friction);
   EXPECT_EQ(scene.top.friction, 0.4);
   EXPECT_EQ(scene.right.kind, mpm::Wall::Kind::open);
+}
+
+TEST(ReadScene, an_edge_in_parts) {
+  const std::string parts =
+      "floor = [{ from = 0.2, to = 0.5, kind = \"open\" }, { to = 0.3, friction = 0.4 }, "
+      "{ speed = 0.1 }]\n[[body]]";
+  const SceneFile file = scene_of(replaced(granular, "[[body]]", parts));
+  const mpm::Wall& floor = file.scene.floor;
+  ASSERT_EQ(floor.kind, mpm::Wall::Kind::parts);
+  ASSERT_EQ(floor.parts.size(), 3U);
+  EXPECT_EQ(floor.parts[0].kind, mpm::Wall::Kind::open);
+  EXPECT_EQ(floor.parts[0].from[0], 0.2);
+  EXPECT_EQ(floor.parts[0].to[0], 0.5);
+  EXPECT_EQ(floor.parts[1].kind, mpm::Wall::Kind::friction);
+  EXPECT_EQ(floor.parts[1].friction, 0.4);
+  EXPECT_EQ(floor.parts[1].from[0], -HUGE_VAL);
+  EXPECT_EQ(floor.parts[2].kind, mpm::Wall::Kind::no_slip);
+  EXPECT_EQ(floor.parts[2].speed, 0.1);
+  // what is written of it reads as the same
+  const std::string written = resolved_input(file, "test");
+  EXPECT_EQ(resolved_input(scene_of(written), "test"), written);
+  const auto problem = [&](const std::string& list) {
+    return problems(replaced(granular, "[[body]]", "floor = " + list + "\n[[body]]"));
+  };
+  EXPECT_NE(problem("[{ kind = \"opne\" }]").find("domain.floor[0].kind must be one of"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"periodic\" }]").find("domain.floor[0].kind must be one of"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ to = 1.0 }]").find("domain.floor[0] needs one of kind"), std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", friction = 0.3 }]").find("needs one of kind"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", form = 1.0 }]").find("form"), std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", from = \"a\" }]").find("domain.floor[0].from"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", to = 0.3 }]").find("no part of the edge holds in"),
+            std::string::npos);
+  EXPECT_NE(problem("[]").find("domain.floor"), std::string::npos);
 }
 
 TEST(ReadScene, a_periodic_box_with_a_moving_lid) {
