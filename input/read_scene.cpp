@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cmath>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "input/doubts.hpp"
 #include "input/key_info.hpp"
@@ -334,6 +334,48 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
       [&](Keys& below) { law_keys(below, body.law); });
 }
 
+void inflow_keys(Keys& keys, mpm::Inflow& inflow, const mpm::Scene& scene) {
+  keys.text({"name", "-", "for messages"}, inflow.name);
+  keys.word({"edge", "-", "through which it comes in", {}, required}, mpm::edge_names, inflow.edge);
+  std::string body =
+      inflow.body < scene.bodies.size() ? scene.bodies[inflow.body].name : std::string();
+  keys.text({"body", "-", "the name of the body whose law and initial state it has (the first)"},
+            body);
+  stretch_keys(keys, inflow.from, inflow.to);
+  keys.number({"speed", "m/s", "inwards; or a rate", positive}, inflow.speed);
+  keys.number({"rate", "kg/s", "mass per time, in the plane per metre of depth", positive},
+              inflow.rate);
+  keys.number({"starts", "s", "when it begins", not_negative}, inflow.starts);
+  std::optional<double> stops;
+  if (inflow.stops < HUGE_VAL) stops = inflow.stops;
+  keys.number({"stops", "s", "when it ends; without it, never", not_negative}, stops);
+  inflow.stops = stops.value_or(HUGE_VAL);
+  TomlReader* const table = keys.reader();
+  if (table == nullptr) return;
+  std::vector<std::string_view> names;
+  for (const mpm::Body& there : scene.bodies) names.push_back(there.name);
+  const auto found = std::find(names.begin(), names.end(), body);
+  inflow.body = static_cast<std::size_t>(found - names.begin());
+  if (found == names.end()) {
+    const std::string near = nearest_name(body, names);
+    table->report("body",
+                  fmt::format("{} = \"{}\" is no body: there is \"{}\"{}", table->path_of("body"),
+                              body, fmt::join(names, "\", \""),
+                              near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
+  }
+}
+
+/// A place of a probe or tracer, by which its file is named.
+void probe_keys(Keys& keys, mpm::Probe& probe, std::size_t axes) {
+  keys.text({"name", "-", "of its file"}, probe.name);
+  keys.place({"place", "m", "where it is; of a tracer, at the start", {}, required}, axes,
+             probe.place);
+  if (TomlReader* const table = keys.reader(); table != nullptr && !fits_file_name(probe.name))
+    table->report("name", fmt::format("{} = \"{}\" becomes part of a file name: letters, digits, "
+                                      "'.', '_' and '-' only, no '.' in front",
+                                      table->path_of("name"), probe.name));
+}
+
 void grid_keys(Keys& keys, mpm::Scene& scene) {
   keys.number({"h", "m", "cell size", positive, required}, scene.h);
   if (keys.reader() != nullptr && scene.dimensions() == 3) scene.points_per_cell = 8;
@@ -456,6 +498,24 @@ void scene_keys(Keys& keys, SceneFile& file) {
       [&](Keys& below, std::size_t i) {
         surface_keys(below, scene.surfaces[i], scene.dimensions());
       });
+  keys.tables(
+      {"inflow", "-", "material that comes in through an edge"}, scene.inflows.size(),
+      [&](std::size_t count) {
+        for (std::size_t i = scene.inflows.size(); i < count; ++i)
+          scene.inflows.emplace_back().name = fmt::format("inflow{}", i);
+      },
+      [&](Keys& below, std::size_t i) { inflow_keys(below, scene.inflows[i], scene); });
+  const auto probes = [&](const Key& key, std::vector<mpm::Probe>& list) {
+    keys.tables(
+        key, list.size(),
+        [&](std::size_t count) {
+          for (std::size_t i = list.size(); i < count; ++i)
+            list.emplace_back().name = fmt::format("{}", i);
+        },
+        [&](Keys& below, std::size_t i) { probe_keys(below, list[i], scene.dimensions()); });
+  };
+  probes({"probe", "-", "a place that is looked at over time: probe_NAME.csv"}, scene.probes);
+  probes({"tracer", "-", "the point nearest to a place, followed: tracer_NAME.csv"}, scene.tracers);
   keys.table({"grid", "-", "cells and points", {}, required},
              [&](Keys& below) { grid_keys(below, scene); });
   keys.table({"step", "-", "how a step is made"}, [&](Keys& below) { step_keys(below, scene); });

@@ -266,7 +266,8 @@ void add_tables(std::string& page, const std::string& path, const std::vector<Ke
         for (const KeyInfo& other : keys)
           if (&other != &key && other.kind == ValueKind::any_of &&
               other.below.back().kind == ValueKind::tables)
-            heading += fmt::format(", `[[{}]]`", path.empty() ? other.name : path + "." + other.name);
+            heading +=
+                fmt::format(", `[[{}]]`", path.empty() ? other.name : path + "." + other.name);
       }
       page += fmt::format("\n### {}\n", heading);
       if (forms_of(form) != nullptr)

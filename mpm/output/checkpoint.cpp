@@ -16,7 +16,7 @@
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 6;
+constexpr std::int64_t format_version = 7;
 
 /// An open HDF5 object, closed by its own function.
 class Handle {
@@ -103,6 +103,9 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   real(s.ledger.outflow);
   real(s.ledger.outflow_elastic);
   real(s.ledger.outflow_mass);
+  real(s.ledger.inflow);
+  real(s.ledger.inflow_elastic);
+  real(s.ledger.inflow_mass);
   real(s.ledger.kinetic);
   real(s.ledger.power);
   real(s.highest_energy);
@@ -115,6 +118,8 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   whole(s.points_held);
   whole(s.most_points_held);
   whole(s.point_steps_held);
+  whole(s.next_id);
+  for (auto& entry : s.entries) whole(entry.rows);
 }
 
 /// Turns HDF5's own error printing off for a while.
@@ -259,6 +264,8 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
                         std::isfinite(s.signals.signal) && s.signals.signal >= 0.0 &&
                         std::isfinite(s.signals.viscous_rate) && s.signals.viscous_rate >= 0.0;
     if (!moments || !speeds) reject("its times or speeds are none");
+
+    s.walls = s.walls_now();
 
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
       PointsOf<dim>& points = s.bodies[b];

@@ -226,6 +226,17 @@ std::array<std::int64_t, 3> point_lattice(const Scene& scene, const Body& body);
 /// is 89.6 cells). Returns whether it did. The other edges stay: material rests against them.
 bool raise_top_to_cells(Scene& scene);
 
+/// The stretch of an inflow along the directions of its edge, its ends set where they were left out
+/// [m]; the second is 0 to 1 in the plane.
+struct Stretch {
+  std::array<double, 2> from{}, to{};
+  double area() const { return (to[0] - from[0]) * (to[1] - from[1]); }  ///< [m], in space [m²]
+};
+Stretch stretch_of(const Scene& scene, const Inflow& inflow);
+
+/// How fast the material of an inflow comes in, whose density is given [m/s].
+double speed_of(const Scene& scene, const Inflow& inflow, double density);
+
 /// Checks what no single value can tell: bodies inside the box and not overlapping, h that divides
 /// the box, a square points_per_cell, laws that accept their parameters and initial state, nothing
 /// that only plane strain has in a scene in space. Throws

@@ -519,6 +519,88 @@ void check_surfaces(const Scene& scene) {
     throw InputError("domain.left", "rigid surfaces do not go with periodic edges yet");
 }
 
+void check_inflow(const Scene& scene, std::size_t i) {
+  const Inflow& inflow = scene.inflows[i];
+  const std::string path = "inflow[" + std::to_string(i) + "].";
+  const auto refuse = [&](const char* key, const std::string& why) {
+    throw InputError(path + key, why);
+  };
+  if (inflow.edge >= 2 * scene.dimensions())
+    refuse("edge", "near and far are edges of a scene in space");
+  if (inflow.body >= scene.bodies.size()) refuse("body", "there is no such body");
+  if (inflow.speed.has_value() == inflow.rate.has_value())
+    refuse(inflow.speed ? "rate" : "speed",
+           "give either speed or rate: the other follows from the density and the width");
+  const double given = inflow.speed.value_or(inflow.rate.value_or(0.0));
+  require(given, positive, (path + (inflow.speed ? "speed" : "rate")).c_str(),
+          inflow.speed ? "speed" : "rate");
+  require(inflow.starts, not_negative, (path + "starts").c_str(), "starts");
+  if (!(inflow.stops > inflow.starts))
+    refuse("stops", "it would end at " + number(inflow.stops) + " s, before it begins at " +
+                        number(inflow.starts) + " s");
+  const Stretch stretch = stretch_of(scene, inflow);
+  for (std::size_t k = 0; k + 1 < scene.dimensions(); ++k) {
+    if (!(stretch.from[k] < stretch.to[k]))
+      refuse("from", "it would begin at " + number(stretch.from[k]) + " m and end at " +
+                         number(stretch.to[k]) + " m");
+    for (const auto& [end, key] : {std::pair{stretch.from[k], "from"}, {stretch.to[k], "to"}})
+      if (std::abs(end / scene.h - std::round(end / scene.h)) > lattice_tolerance)
+        refuse(key, "an inflow begins and ends at whole cells of h = " + number(scene.h) +
+                        " m: " + number(end) + " m is " + number(end / scene.h, 6) + "; " +
+                        good_lengths(end, scene.h) + " m would do");
+  }
+  for (std::size_t j = 0; j < i; ++j) {
+    const Inflow& other = scene.inflows[j];
+    const Stretch there = stretch_of(scene, other);
+    const bool apart = other.edge != inflow.edge || other.stops <= inflow.starts ||
+                       inflow.stops <= other.starts || there.to[0] <= stretch.from[0] ||
+                       stretch.to[0] <= there.from[0] || there.to[1] <= stretch.from[1] ||
+                       stretch.to[1] <= there.from[1];
+    if (!apart) refuse("from", "it overlaps inflow[" + std::to_string(j) + "]");
+  }
+  const Body& body = scene.bodies[inflow.body];
+  if (body.lithostatic)
+    refuse("body",
+           "what comes in has the body's initial state, and this body's is lithostatic: "
+           "another at every depth");
+  const std::string but = "material that comes in does not go with ";
+  if (scene.edge(inflow.edge).kind == Wall::Kind::periodic ||
+      scene.left.kind == Wall::Kind::periodic)
+    refuse("edge", but + "periodic edges yet");
+  if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer", but + "transfer = \"" + std::string(name_of(scene.transfer)) +
+                                          "\" yet; any other transfer does");
+  if (scene.viscosity == Viscosity::implicit_solve)
+    throw InputError("step.viscosity", but + "viscosity = \"implicit\" yet");
+  // how many come in until the end
+  double density = 0.0;
+  try {
+    density = make_material(body.law)->initial(body.initial).density;
+  } catch (const InputError&) {
+    return;  // told of the body
+  }
+  const double time = std::min(inflow.stops, scene.end_time) - inflow.starts;
+  const double spacing = point_spacing(scene);
+  const double points = std::max(time, 0.0) * speed_of(scene, inflow, density) * stretch.area() /
+                        std::pow(spacing, scene.dimensions());
+  if (!(points <= max_points))
+    refuse(inflow.speed ? "speed" : "rate",
+           number(points, 3) + " points would come in, more than memory is likely to hold (" +
+               number(max_points) + ")");
+}
+
+void check_places(const Scene& scene, const std::vector<Probe>& places, const char* table) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::string path = std::string(table) + "[" + std::to_string(i) + "].";
+    for (std::size_t k = 0; k < scene.dimensions(); ++k)
+      if (!(places[i].place[k] >= 0.0 && places[i].place[k] <= scene.domain[k]))
+        throw InputError(path + "place", "the place lies outside of the box");
+    for (std::size_t j = 0; j < i; ++j)
+      if (places[i].name == places[j].name)
+        throw InputError(path + "name", "there are two of the name \"" + places[i].name + "\"");
+  }
+}
+
 void check_polygons(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
@@ -657,6 +739,9 @@ void validate(const Scene& scene) {
   check_surfaces(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+  for (std::size_t i = 0; i < scene.inflows.size(); ++i) check_inflow(scene, i);
+  check_places(scene, scene.probes, "probe");
+  check_places(scene, scene.tracers, "tracer");
   check_space(scene);
   check_extension(scene);
   check_viscosity(scene);

@@ -150,6 +150,38 @@ TEST(ReadScene, an_edge_in_parts) {
   EXPECT_NE(problem("[]").find("domain.floor"), std::string::npos);
 }
 
+TEST(ReadScene, inflows_probes_and_tracers) {
+  const std::string text =
+      replaced(granular, "[grid]",
+               "[[inflow]]\nedge = \"top\"\nfrom = 0.1\nto = 0.2\nrate = 3.0\nstops = 0.5\n"
+               "[[probe]]\nname = \"gauge\"\nplace = [0.1, 0.1]\n[[tracer]]\nplace = [0.1, 0.2]\n"
+               "[grid]");
+  const SceneFile file = scene_of(text);
+  ASSERT_EQ(file.scene.inflows.size(), 1U);
+  const mpm::Inflow& inflow = file.scene.inflows[0];
+  EXPECT_EQ(mpm::edge_names[inflow.edge], "top");
+  EXPECT_EQ(inflow.from[0], 0.1);
+  EXPECT_EQ(inflow.rate, 3.0);
+  EXPECT_FALSE(inflow.speed);
+  EXPECT_EQ(inflow.stops, 0.5);
+  ASSERT_EQ(file.scene.probes.size(), 1U);
+  EXPECT_EQ(file.scene.probes[0].name, "gauge");
+  EXPECT_EQ(file.scene.tracers.at(0).name, "0");
+  EXPECT_EQ(file.scene.tracers[0].place[1], 0.2);
+  const std::string written = resolved_input(file, "test");
+  EXPECT_EQ(resolved_input(scene_of(written), "test"), written);
+  const auto problem = [&](const char* old, const char* fresh) {
+    return problems(replaced(text, old, fresh));
+  };
+  EXPECT_NE(problem("stops = 0.5", "body = \"snad\"").find("is no body: there is \""),
+            std::string::npos);
+  EXPECT_NE(problem("edge = \"top\"", "").find("inflow"), std::string::npos);
+  EXPECT_NE(problem("rate = 3.0", "rate = -3.0").find("inflow[0].rate"), std::string::npos);
+  EXPECT_NE(problem("rate = 3.0", "rate = 3.0\nspeed = 1.0").find("give either speed or rate"),
+            std::string::npos);
+  EXPECT_NE(problem("\"gauge\"", "\"a/b\"").find("becomes part of a file name"), std::string::npos);
+}
+
 TEST(ReadScene, a_periodic_box_with_a_moving_lid) {
   const mpm::Scene scene =
       scene_of(
