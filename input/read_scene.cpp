@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cmath>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "input/doubts.hpp"
 #include "input/key_info.hpp"
@@ -61,10 +61,81 @@ void speed_key(Keys& keys, double& speed) {
   keys.number({"speed", "m/s", "of the wall along itself", {}, required}, speed);
 }
 
+constexpr std::array<std::string_view, 3> part_words{"no_slip", "slip", "open"};
+
+/// An end of a stretch of an edge: along it, in space of both its directions or of the first.
+void end_key(Keys& keys, std::string_view name, std::string_view doc, double absent,
+             std::array<double, 2>& end) {
+  KeyInfo info, one, two;
+  info.kind = ValueKind::any_of;
+  one.kind = ValueKind::number;
+  two.kind = ValueKind::number_list;
+  two.least = two.most = 2;
+  info.below = {one, two};
+  keys.value(
+      {name, "m", doc},
+      [&](TomlReader& table) {
+        if (table.get(name)->is_array())
+          end = table.pair({name, "m", doc, {}, {}});
+        else
+          end = {table.number({name, "m", doc, {}, {}}), absent};
+      },
+      [&] {
+        if (std::isfinite(end[1]))
+          return fmt::format("[{}, {}]", toml_number(end[0]), toml_number(end[1]));
+        return std::isfinite(end[0]) ? toml_number(end[0]) : std::string();
+      },
+      info);
+}
+
+void stretch_keys(Keys& keys, std::array<double, 2>& from, std::array<double, 2>& to) {
+  end_key(keys, "from", "where it begins along the edge; in space also [x, z]: in both directions",
+          -HUGE_VAL, from);
+  end_key(keys, "to", "where it ends", HUGE_VAL, to);
+}
+
+/// The keys of a part of an edge: one of kind, friction and speed.
+void part_keys(Keys& keys, Wall::Part& part) {
+  static constexpr std::array kinds{Wall::Kind::no_slip, Wall::Kind::slip, Wall::Kind::open};
+  std::optional<std::size_t> kind;
+  std::optional<double> friction, speed;
+  if (part.kind == Wall::Kind::friction)
+    friction = part.friction;
+  else if (part.speed != 0.0)
+    speed = part.speed;
+  else
+    kind = std::find(kinds.begin(), kinds.end(), part.kind) - kinds.begin();
+  if (keys.reader() != nullptr || keys.describes()) kind.reset();
+  keys.word({"kind", "-", "of this part; or friction, or speed"}, part_words, kind);
+  keys.number({"friction", "-", "Coulomb coefficient", Range{0.0, 1e3, false, false}}, friction);
+  keys.number({"speed", "m/s", "of the wall along itself"}, speed);
+  stretch_keys(keys, part.from, part.to);
+  TomlReader* const table = keys.reader();
+  if (table == nullptr) return;
+  const int given = (table->has("kind") ? 1 : 0) + (table->has("friction") ? 1 : 0) +
+                    (table->has("speed") ? 1 : 0);
+  if (given != 1)
+    table->report(given == 0 ? "" : "kind",
+                  fmt::format("{} needs one of kind = \"no_slip\", \"slip\" or \"open\", "
+                              "friction = 0.4 and speed = 0.1",
+                              table->path()));
+  part.kind = friction ? Wall::Kind::friction : kind ? kinds[*kind] : Wall::Kind::no_slip;
+  part.friction = friction.value_or(0.0);
+  part.speed = speed.value_or(0.0);
+}
+
 }  // namespace
 
 Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   const toml::node& node = *table.get(key);
+  if (node.is_array() && key != "walls") {
+    Wall wall{Wall::Kind::parts};
+    for (const TomlReader& entry : table.tables(key, "parts of an edge")) {
+      ReadKeys keys(entry);
+      part_keys(keys, wall.parts.emplace_back());
+    }
+    return wall;
+  }
   if (node.is_table()) {
     const TomlReader given = table.table(key);
     ReadKeys keys(given);
@@ -86,9 +157,13 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
   if (!node.is_string()) {
     table.report(key,
                  fmt::format("{} must be one of \"no_slip\", \"slip\", \"open\", \"periodic\", "
-                             "or a table such as {{ friction = 0.4 }} or {{ speed = 0.1 }}; "
+                             "or a table such as {{ friction = 0.4 }} or {{ speed = 0.1 }}{}; "
                              "got {}",
-                             table.path_of(key), describe(node)));
+                             table.path_of(key),
+                             key == "walls" ? ""
+                                            : ", or a list of parts such as "
+                                              "{ from = 0.4, to = 0.6, kind = \"open\" }",
+                             describe(node)));
     return fallback;
   }
   return {wall_kinds[table.choice(key, {wall_words.begin(), wall_words.end()}, 0)]};
@@ -96,7 +171,27 @@ Wall read_wall(TomlReader& table, std::string_view key, const Wall& fallback) {
 
 namespace {
 
+std::string part_text(const Wall::Part& part) {
+  const auto end = [](std::string_view name, const std::array<double, 2>& at) {
+    if (std::isfinite(at[1]))
+      return fmt::format("{} = [{}, {}], ", name, toml_number(at[0]), toml_number(at[1]));
+    return std::isfinite(at[0]) ? fmt::format("{} = {}, ", name, toml_number(at[0])) : "";
+  };
+  const auto at = std::find(wall_kinds.begin(), wall_kinds.end(), part.kind) - wall_kinds.begin();
+  const std::string kind =
+      part.kind == Wall::Kind::friction ? fmt::format("friction = {}", toml_number(part.friction))
+      : part.speed != 0.0
+          ? fmt::format("speed = {}", toml_number(part.speed))
+          : fmt::format("kind = {}", toml_string(wall_words[static_cast<std::size_t>(at)]));
+  return fmt::format("{{ {}{}{} }}", end("from", part.from), end("to", part.to), kind);
+}
+
 std::string wall_text(const Wall& wall) {
+  if (wall.kind == Wall::Kind::parts) {
+    std::string text;
+    for (const Wall::Part& part : wall.parts) text += (text.empty() ? "" : ", ") + part_text(part);
+    return fmt::format("[{}]", text);
+  }
   if (wall.kind == Wall::Kind::friction)
     return fmt::format("{{ friction = {} }}", toml_number(wall.friction));
   if (wall.speed != 0.0) return fmt::format("{{ speed = {} }}", toml_number(wall.speed));
@@ -104,8 +199,9 @@ std::string wall_text(const Wall& wall) {
   return toml_string(wall_words[static_cast<std::size_t>(at)]);
 }
 
-const KeyInfo& wall_info() {
-  static const KeyInfo info = [] {
+/// `in_parts`: whether the edge may be given so.
+const KeyInfo& wall_info(bool in_parts) {
+  const auto info_of = [](bool parts) {
     KeyInfo any, word, friction, speed;
     any.kind = ValueKind::any_of;
     word.kind = ValueKind::word;
@@ -115,15 +211,23 @@ const KeyInfo& wall_info() {
     friction.below = describe_keys([&](Keys& keys) { friction_key(keys, x); });
     speed.below = describe_keys([&](Keys& keys) { speed_key(keys, x); });
     any.below = {word, friction, speed};
+    if (parts) {
+      KeyInfo list;
+      list.kind = ValueKind::tables;
+      Wall::Part part;
+      list.below = describe_keys([&](Keys& keys) { part_keys(keys, part); });
+      any.below.push_back(list);
+    }
     return any;
-  }();
-  return info;
+  };
+  static const KeyInfo whole = info_of(false), any = info_of(true);
+  return in_parts ? any : whole;
 }
 
 void wall_key(Keys& keys, std::string_view name, std::string_view doc, Wall& wall) {
   keys.value(
       {name, "-", doc}, [&](TomlReader& table) { wall = read_wall(table, name, wall); },
-      [&] { return wall_text(wall); }, wall_info());
+      [&] { return wall_text(wall); }, wall_info(true));
 }
 
 void domain_keys(Keys& keys, mpm::Scene& scene) {
@@ -155,7 +259,7 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
         // periodic walls are those across the flow; the top is then left as it is
         if (walls.kind != Wall::Kind::periodic) scene.top = walls;
       },
-      [] { return std::string(); }, wall_info());
+      [] { return std::string(); }, wall_info(false));
   wall_key(keys, "left", "edge at x = 0", scene.left);
   wall_key(keys, "right", "edge at the other end of x", scene.right);
   wall_key(keys, "top", "upper edge", scene.top);
@@ -241,6 +345,48 @@ void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
        {},
        required},
       [&](Keys& below) { law_keys(below, body.law); });
+}
+
+void inflow_keys(Keys& keys, mpm::Inflow& inflow, const mpm::Scene& scene) {
+  keys.text({"name", "-", "for messages"}, inflow.name);
+  keys.word({"edge", "-", "through which it comes in", {}, required}, mpm::edge_names, inflow.edge);
+  std::string body =
+      inflow.body < scene.bodies.size() ? scene.bodies[inflow.body].name : std::string();
+  keys.text({"body", "-", "the name of the body whose law and initial state it has (the first)"},
+            body);
+  stretch_keys(keys, inflow.from, inflow.to);
+  keys.number({"speed", "m/s", "inwards; or a rate", positive}, inflow.speed);
+  keys.number({"rate", "kg/s", "mass per time, in the plane per metre of depth", positive},
+              inflow.rate);
+  keys.number({"starts", "s", "when it begins", not_negative}, inflow.starts);
+  std::optional<double> stops;
+  if (inflow.stops < HUGE_VAL) stops = inflow.stops;
+  keys.number({"stops", "s", "when it ends; without it, never", not_negative}, stops);
+  inflow.stops = stops.value_or(HUGE_VAL);
+  TomlReader* const table = keys.reader();
+  if (table == nullptr) return;
+  std::vector<std::string_view> names;
+  for (const mpm::Body& there : scene.bodies) names.push_back(there.name);
+  const auto found = std::find(names.begin(), names.end(), body);
+  inflow.body = static_cast<std::size_t>(found - names.begin());
+  if (found == names.end()) {
+    const std::string near = nearest_name(body, names);
+    table->report("body",
+                  fmt::format("{} = \"{}\" is no body: there is \"{}\"{}", table->path_of("body"),
+                              body, fmt::join(names, "\", \""),
+                              near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
+  }
+}
+
+/// A place of a probe or tracer, by which its file is named.
+void probe_keys(Keys& keys, mpm::Probe& probe, std::size_t axes) {
+  keys.text({"name", "-", "of its file"}, probe.name);
+  keys.place({"place", "m", "where it is; of a tracer, at the start", {}, required}, axes,
+             probe.place);
+  if (TomlReader* const table = keys.reader(); table != nullptr && !fits_file_name(probe.name))
+    table->report("name", fmt::format("{} = \"{}\" becomes part of a file name: letters, digits, "
+                                      "'.', '_' and '-' only, no '.' in front",
+                                      table->path_of("name"), probe.name));
 }
 
 void grid_keys(Keys& keys, mpm::Scene& scene) {
@@ -375,6 +521,24 @@ void scene_keys(Keys& keys, SceneFile& file) {
       [&](Keys& below, std::size_t i) {
         surface_keys(below, scene.surfaces[i], scene.dimensions());
       });
+  keys.tables(
+      {"inflow", "-", "material that comes in through an edge"}, scene.inflows.size(),
+      [&](std::size_t count) {
+        for (std::size_t i = scene.inflows.size(); i < count; ++i)
+          scene.inflows.emplace_back().name = fmt::format("inflow{}", i);
+      },
+      [&](Keys& below, std::size_t i) { inflow_keys(below, scene.inflows[i], scene); });
+  const auto probes = [&](const Key& key, std::vector<mpm::Probe>& list) {
+    keys.tables(
+        key, list.size(),
+        [&](std::size_t count) {
+          for (std::size_t i = list.size(); i < count; ++i)
+            list.emplace_back().name = fmt::format("{}", i);
+        },
+        [&](Keys& below, std::size_t i) { probe_keys(below, list[i], scene.dimensions()); });
+  };
+  probes({"probe", "-", "a place that is looked at over time: probe_NAME.csv"}, scene.probes);
+  probes({"tracer", "-", "the point nearest to a place, followed: tracer_NAME.csv"}, scene.tracers);
   keys.table({"grid", "-", "cells and points", {}, required},
              [&](Keys& below) { grid_keys(below, scene); });
   keys.table({"step", "-", "how a step is made"}, [&](Keys& below) { step_keys(below, scene); });

@@ -249,6 +249,7 @@ void add_tables(std::string& page, const std::string& path, const std::vector<Ke
   }
   if (!rows.empty())
     page += "\n| key | unit | value | default | meaning |\n|---|---|---|---|---|\n" + rows;
+  int list_forms = 0;
   for (const KeyInfo& key : keys) {
     const std::vector<KeyInfo> forms =
         key.kind == ValueKind::any_of ? key.below : std::vector<KeyInfo>{key};
@@ -257,9 +258,18 @@ void add_tables(std::string& page, const std::string& path, const std::vector<Ke
       const bool short_form = key.kind == ValueKind::any_of && form.below.size() < 2;
       if (short_form) continue;
       const std::string below = path.empty() ? key.name : path + "." + key.name;
-      page +=
-          fmt::format("\n### `{}`\n", form.kind == ValueKind::tables ? fmt::format("[[{}]]", below)
-                                                                     : fmt::format("[{}]", below));
+      std::string heading = form.kind == ValueKind::tables ? fmt::format("`[[{}]]`", below)
+                                                           : fmt::format("`[{}]`", below);
+      if (form.kind == ValueKind::tables && key.kind == ValueKind::any_of) {
+        // the edges of a box: all of one form, which is told once
+        if (list_forms++ > 0) continue;
+        for (const KeyInfo& other : keys)
+          if (&other != &key && other.kind == ValueKind::any_of &&
+              other.below.back().kind == ValueKind::tables)
+            heading +=
+                fmt::format(", `[[{}]]`", path.empty() ? other.name : path + "." + other.name);
+      }
+      page += fmt::format("\n### {}\n", heading);
       if (forms_of(form) != nullptr)
         page +=
             "\n`name` is one of the laws of `repose models`; `repose models LAW` lists the other "

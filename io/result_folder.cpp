@@ -178,12 +178,32 @@ ResultFolder::ResultFolder(fs::path folder) : folder_(std::move(folder)) {
   if (error) throw IoError(folder_, "cannot create the result folder", error.value());
 }
 
+namespace {
+
+/// A table of a probe or tracer, which a run names.
+bool is_probe_table(const std::string& name) {
+  return (name.starts_with("probe_") || name.starts_with("tracer_")) && name.ends_with(".csv");
+}
+
+std::vector<std::string> probe_tables(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (const std::string name = it->path().filename().string(); is_probe_table(name))
+      names.push_back(name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
 fs::path ResultFolder::default_path(std::string_view name) { return fs::path("results") / name; }
 
 std::span<const std::string_view> ResultFolder::output_names() { return outputs; }
 
 void ResultFolder::remove_old_outputs() const {
   for (const std::string_view name : outputs) remove_file(file(name));
+  for (const std::string& name : probe_tables(folder_)) remove_file(file(name));
   remove_old_parts();
   remove_frames(frames());
 }
@@ -233,6 +253,7 @@ void ResultFolder::seal() const {
   for (const std::string_view name : outputs)
     if (std::find(passing.begin(), passing.end(), name) == passing.end())
       add(std::string(name), true);
+  for (const std::string& name : probe_tables(folder_)) add(name, true);
   std::error_code error;
   std::vector<std::string> frame_files;
   for (fs::directory_iterator it(frames(), error), end; !error && it != end; it.increment(error))

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mpm/boundary/wall_parts.hpp"
+
 namespace repose::mpm {
 namespace {
 
@@ -87,10 +89,10 @@ struct Triple {
     return {x.a - y.a, x.b - y.b, x.c - y.c};
   }
 
-  /// Seen from a wall that slides along itself, in the first of its axes.
-  Triple moved(double by) const {
+  /// With a velocity added: seen from a wall that moves.
+  Triple moved(const Parts<dim>& by, double factor) const {
     Triple r = *this;
-    for (Parts<dim>* parts : {&r.a, &r.b, &r.c}) parts->t[0] += by;
+    for (Parts<dim>* parts : {&r.a, &r.b, &r.c}) parts->add(factor, by);
     return r;
   }
 
@@ -140,9 +142,10 @@ double coulomb_share(const Triple<dim>& v, double m_a, double m_b, double m_c, d
   return J_t > friction * J_n ? friction * J_n / J_t : 1.0;
 }
 
-/// `inward` is +1 where the inside lies on the positive side of the wall, else −1.
-template <int dim>
-WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>& a,
+/// `inward` is +1 where the inside lies on the positive side of the wall, else −1. `OfWall` is a
+/// Wall or a part of one.
+template <int dim, class OfWall>
+WallEffect apply_to_triple(const OfWall& wall, double inward, const WallNode<dim>& a,
                            const WallNode<dim>& b, const WallNode<dim>& c,
                            std::vector<MirroredTriple>* record) {
   const double m_a = a.m();
@@ -152,7 +155,8 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>&
   WallNode<dim>::mirror_extra(a, c);
   const Triple<dim> u{a.before_forces(), b.before_forces(), c.before_forces()};
   const Triple<dim> v{a.after_forces(), b.after_forces(), c.after_forces()};
-  double stick = wall.kind == Wall::Kind::no_slip ? 1.0 : 0.0;
+  const bool comes_in = wall.kind == Wall::Kind::inflow;
+  double stick = wall.kind == Wall::Kind::no_slip || comes_in ? 1.0 : 0.0;
   if (wall.kind == Wall::Kind::friction) {
     stick = coulomb_share(v, m_a, m_b, m_c, wall.friction, inward);
     if (stick < 0.0) return {};
@@ -166,8 +170,14 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>&
     record->push_back({{place(a), place(b), place(c)}, a.normal == 0, m_a, m_c, stick, {}});
     if (gives_impulses) record->back().conserves = m;
   }
-  const Triple<dim> u_new = u.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
-  const Triple<dim> v_new = v.moved(-wall.speed).mirrored(m_a, m_c, stick).moved(wall.speed);
+  // along the first of its axes; where material comes in, across it
+  Parts<dim> motion;
+  const double speed = comes_in ? inward * wall.speed : wall.speed;
+  (comes_in ? motion.n : motion.t[0]) = speed;
+  const auto constrained = [&](const Triple<dim>& x) {
+    return x.moved(motion, -1.0).mirrored(m_a, m_c, stick).moved(motion, 1.0);
+  };
+  const Triple<dim> u_new = constrained(u), v_new = constrained(v);
   const Triple<dim> u_left = gives_impulses ? with_momentum_of(u, u_new, m) : u_new;
   a.set(m_a + m_c, u_left.a, v_new.a);
   b.set(2.0 * m_b, u_left.b, v_new.b);
@@ -177,7 +187,8 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>&
   };
   const Triple<dim> kick = v - u;  // Δt(f + mg)/m
   const auto dragged = [&](const Triple<dim>& x) {
-    return m[0] * x.a.t[0] + m[1] * x.b.t[0] + m[2] * x.c.t[0];
+    const auto along_motion = [&](const Parts<dim>& of) { return comes_in ? of.n : of.t[0]; };
+    return m[0] * along_motion(x.a) + m[1] * along_motion(x.b) + m[2] * along_motion(x.c);
   };
   const double kinetic_after = 0.5 * (inner(v_new, v_new) - inner(v, v));
   if (gives_impulses) {
@@ -187,7 +198,89 @@ WallEffect apply_to_triple(const Wall& wall, double inward, const WallNode<dim>&
     return effect;
   }
   return {0.5 * (inner(u_new, u_new) - inner(u, u)), kinetic_after, inner(kick, u_new - u),
-          wall.speed * dragged(u_new - u), wall.speed * dragged(v_new - v)};
+          speed * dragged(u_new - u), speed * dragged(v_new - v)};
+}
+
+/// What binds the first nodes of an opening to a node of it that is free: a term for each node, the
+/// velocity q of which is to be `share` times the master's, with the mass that q has.
+struct Bound {
+  double share, mass;
+  double u, v;  ///< q before and after forces
+};
+
+/// Sets each q to its share of one that keeps Σ mass·share·q (wall_parts.hpp).
+void bind(std::vector<Bound>& group) {
+  double mass = 0.0, u = 0.0, v = 0.0;
+  for (const Bound& q : group) {
+    mass += q.mass * q.share * q.share;
+    u += q.mass * q.share * q.u;
+    v += q.mass * q.share * q.v;
+  }
+  for (Bound& q : group) {
+    q.u = mass > 0.0 ? q.share * u / mass : 0.0;
+    q.v = mass > 0.0 ? q.share * v / mass : 0.0;
+  }
+}
+
+/// Binds the nodes of an opening next to its lips to the free node `index` (along the wall).
+template <int dim, class TripleAt>
+WallEffect bind_to(const WallParts<dim>& parts, const std::array<int, dim - 1>& index,
+                   const TripleAt& triple_at) {
+  constexpr int around = dim == 2 ? 3 : 9;
+  struct Member {
+    double share;
+    std::array<WallNode<dim>, 3> node;  // behind, on and inside the wall
+  };
+  std::vector<Member> members;
+  for (int k = 0; k < around; ++k) {
+    std::array<int, dim - 1> at = index, offset{};
+    int rest = k;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      offset[i] = rest % 3 - 1;
+      at[i] += offset[i];
+      rest /= 3;
+    }
+    const auto node = parts.node(at);
+    if (node.part->kind != Wall::Kind::open || node.towards_lip != offset) continue;
+    double share = 1.0;
+    for (const double s : node.share) share *= s;
+    members.push_back({share, triple_at(at)});
+  }
+  WallEffect effect;
+  if (members.size() < 2) return effect;
+  std::vector<Bound> on, beside;
+  for (const Member& member : members) {
+    const auto& [a, b, c] = member.node;
+    on.push_back({member.share, b.m(), b.before_forces().n, b.after_forces().n});
+    const double m_a = a.m(), m_c = c.m();
+    beside.push_back({member.share, m_a + m_c > 0.0 ? m_a * m_c / (m_a + m_c) : 0.0,
+                      a.before_forces().n + c.before_forces().n,
+                      a.after_forces().n + c.after_forces().n});
+  }
+  const std::vector<Bound> on_before = on, beside_before = beside;
+  bind(on);
+  bind(beside);
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto& [a, b, c] = members[k].node;
+    const auto change = [&](const WallNode<dim>& node, double share, const Bound& from,
+                            const Bound& to) {
+      Parts<dim> u = node.before_forces(), v = node.after_forces();
+      const Parts<dim> u_old = u, v_old = v;
+      u.n += share * (to.u - from.u);
+      v.n += share * (to.v - from.v);
+      node.set(node.m(), u, v);
+      const double m = node.real_mass();
+      effect.kinetic_before += 0.5 * m * (u.n * u.n - u_old.n * u_old.n);
+      effect.kinetic_after += 0.5 * m * (v.n * v.n - v_old.n * v_old.n);
+      effect.impulse_work += m * (v_old.n - u_old.n) * (u.n - u_old.n);
+    };
+    change(b, 1.0, on_before[k], on[k]);
+    const double m_a = a.m(), m_c = c.m();
+    if (!(m_a > 0.0 && m_c > 0.0)) continue;
+    change(a, m_c / (m_a + m_c), beside_before[k], beside[k]);
+    change(c, m_a / (m_a + m_c), beside_before[k], beside[k]);
+  }
+  return effect;
 }
 
 /// A wall across an axis, at the node index `line` of it.
@@ -196,26 +289,45 @@ WallEffect apply_wall(GridOf<dim>& grid, const Wall& wall, std::size_t normal, i
                       std::vector<MirroredTriple>* record) {
   WallEffect total;
   if (wall.kind == Wall::Kind::open || wall.kind == Wall::Kind::periodic) return total;
+  using Along = std::array<int, dim - 1>;
+  const bool in_parts = wall.kind == Wall::Kind::parts;
+  const WallParts<dim> parts(wall, normal, grid);
+  std::vector<Along> free;  // nodes of openings
+  const auto triple_at = [&](const Along& along_wall) {
+    typename GridOf<dim>::Index index{};
+    for (std::size_t i = 0; i < along_wall.size(); ++i) index[along(normal, i)] = along_wall[i];
+    const auto at = [&](int offset) {
+      index[normal] = line + offset;
+      return wall_node(grid, index, normal);
+    };
+    return std::array{at(-inward), at(0), at(inward)};
+  };
   const int block = grid.block_of_cell(normal, line);
   for (const NodeBlockOf<dim>& nb : grid.node_blocks) {
     if (nb.at[normal] != block) continue;
     const int count = Shape<dim>::nodes / Shape<dim>::cells[normal];
     for (int n = 0; n < count; ++n) {  // the block's nodes on the wall
-      typename GridOf<dim>::Index index{};
+      Along index{};
       int rest = n;
-      for (std::size_t i = 0; i + 1 < index.size(); ++i) {
+      for (std::size_t i = 0; i < index.size(); ++i) {
         const std::size_t axis = along(normal, i);
-        index[axis] = GridOf<dim>::first(axis, nb.at[axis]) + rest % Shape<dim>::cells[axis];
+        index[i] = GridOf<dim>::first(axis, nb.at[axis]) + rest % Shape<dim>::cells[axis];
         rest /= Shape<dim>::cells[axis];
       }
-      const auto at = [&](int offset) {
-        index[normal] = line + offset;
-        return wall_node(grid, index, normal);
-      };
-      const WallEffect here = apply_to_triple(wall, inward, at(-inward), at(0), at(inward), record);
-      total += here;
+      const auto [a, b, c] = triple_at(index);
+      if (!in_parts) {
+        total += apply_to_triple(wall, inward, a, b, c, record);
+        continue;
+      }
+      if (a.m() + b.m() + c.m() == 0.0) continue;
+      const auto node = parts.node(index);
+      if (node.part->kind != Wall::Kind::open)
+        total += apply_to_triple(*node.part, inward, a, b, c, record);
+      else if (node.free())
+        free.push_back(index);
     }
   }
+  for (const Along& index : free) total += bind_to<dim>(parts, index, triple_at);
   return total;
 }
 

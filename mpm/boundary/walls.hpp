@@ -12,6 +12,8 @@
 ///   friction: free if nothing presses on the wall; else normal odd, tangential a mixture of even
 ///             and odd with the share φ = min(1, friction J_n/J_t) of the impulse J_t that would
 ///             stop it
+///   inflow:   both odd about the velocity of what comes in
+/// What lies between two parts of an edge: wall_parts.hpp.
 ///
 /// Points that keep something of their own velocity take the increment v − u from the grid. Slip
 /// and no slip hold at every moment: of u they leave what they admit, and what of the points'

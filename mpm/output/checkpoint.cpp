@@ -16,7 +16,7 @@
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 6;
+constexpr std::int64_t format_version = 7;
 
 /// An open HDF5 object, closed by its own function.
 class Handle {
@@ -103,6 +103,9 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   real(s.ledger.outflow);
   real(s.ledger.outflow_elastic);
   real(s.ledger.outflow_mass);
+  real(s.ledger.inflow);
+  real(s.ledger.inflow_elastic);
+  real(s.ledger.inflow_mass);
   real(s.ledger.kinetic);
   real(s.ledger.power);
   real(s.highest_energy);
@@ -115,6 +118,8 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   whole(s.points_held);
   whole(s.most_points_held);
   whole(s.point_steps_held);
+  whole(s.next_id);
+  for (auto& entry : s.entries) whole(entry.rows);
 }
 
 /// Turns HDF5's own error printing off for a while.
@@ -161,7 +166,9 @@ void require_sound(const PointsOf<dim>& points, std::size_t body,
         const double cell = std::floor(points[F::x + a][s] / grid.h());
         const int first = GridOf<dim>::first(a, pb.at[a]);
         const auto closed = [](const Wall& wall) {
-          return wall.kind != Wall::Kind::open && wall.kind != Wall::Kind::periodic;
+          return wall.kind != Wall::Kind::open && wall.kind != Wall::Kind::periodic &&
+                 std::none_of(wall.parts.begin(), wall.parts.end(),
+                              [](const Wall::Part& part) { return part.kind == Wall::Kind::open; });
         };
         const bool inside = (cell >= 0.0 || !closed(walls.low(a))) &&
                             (cell <= grid.cells()[a] || !closed(walls.high(a)));
@@ -263,6 +270,8 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
                         std::isfinite(s.signals.signal) && s.signals.signal >= 0.0 &&
                         std::isfinite(s.signals.viscous_rate) && s.signals.viscous_rate >= 0.0;
     if (!moments || !speeds) reject("its times or speeds are none");
+
+    s.walls = s.walls_now();
 
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
       PointsOf<dim>& points = s.bodies[b];

@@ -59,13 +59,16 @@ SeriesRow Simulation::Impl<dim>::diagnostics() {
                           row.separation_J_per_m + row.averaging_loss_J_per_m +
                           row.density_floor_J_per_m;
   row.work_residual_J_per_m =
-      ledger.stress_work - (e.elastic + ledger.outflow_elastic - ledger.start_elastic) - unstored;
+      ledger.stress_work -
+      (e.elastic + ledger.outflow_elastic - ledger.start_elastic - ledger.inflow_elastic) -
+      unstored;
   row.transfer_loss_J_per_m = ledger.transfer_loss;
   row.wall_loss_J_per_m = ledger.wall_loss;
-  row.energy_residual_J_per_m =
-      ledger.start - (e.kinetic + e.potential + e.elastic + unstored + ledger.transfer_loss +
-                      ledger.wall_loss + ledger.outflow);
+  row.energy_residual_J_per_m = ledger.start + ledger.inflow -
+                                (e.kinetic + e.potential + e.elastic + unstored +
+                                 ledger.transfer_loss + ledger.wall_loss + ledger.outflow);
   row.outflow_kg_per_m = ledger.outflow_mass;
+  row.inflow_kg_per_m = ledger.inflow_mass;
   row.density_min = HUGE_VAL;
   row.density_max = 0.0;
   row.front_max_m = 0.0;

@@ -57,11 +57,17 @@ Simulation::NodeFields Simulation::Impl<dim>::node_fields() {
   all.velocity.assign(dim * count, 0.0);
   if (steps == 0) return all;
   // what stands for a node behind an edge, or the same node where it is inside; −1: nothing does
-  const auto stands_for = [&](std::size_t a, int i) {
-    const int last = grid.cells()[a];
+  const auto stands_for = [&](std::size_t a, const typename GridOf<dim>::Index& at) {
+    const int last = grid.cells()[a], i = at[a];
     if (a == 0 && walls.periodic()) return (i + last) % last;
-    if (i < 0) return walls.low(a).kind == Wall::Kind::open ? -1 : -i;
-    if (i > last) return walls.high(a).kind == Wall::Kind::open ? -1 : 2 * last - i;
+    const auto is_open = [&](const Wall& wall) {
+      if (wall.kind != Wall::Kind::parts) return wall.kind == Wall::Kind::open;
+      std::array<int, dim - 1> along{};
+      for (std::size_t k = 0; k < along.size(); ++k) along[k] = at[k < a ? k : k + 1];
+      return WallParts<dim>(wall, a, grid).node(along).part->kind == Wall::Kind::open;
+    };
+    if (i < 0) return is_open(walls.low(a)) ? -1 : -i;
+    if (i > last) return is_open(walls.high(a)) ? -1 : 2 * last - i;
     return i;
   };
   typename GridOf<dim>::Index index{};
@@ -79,7 +85,7 @@ Simulation::NodeFields Simulation::Impl<dim>::node_fields() {
       const auto [block, place] = grid.node(index);
       if (block == nullptr || !(block->mass[place] > 0.0)) continue;
       typename GridOf<dim>::Index home{};
-      for (std::size_t k = 0; k < dim; ++k) home[k] = stands_for(k, index[k]);
+      for (std::size_t k = 0; k < dim; ++k) home[k] = stands_for(k, index);
       if (std::any_of(home.begin(), home.end(), [](int i) { return i < 0; })) continue;
       all.mass[place_of(home)] += block->mass[place];
       if (home != index) continue;

@@ -22,42 +22,6 @@ auto within(const std::string& table, F&& f) {
   }
 }
 
-template <int dim>
-void append(PointsOf<dim>& points, const std::array<double, dim>& x, const Body& body,
-            const InitialPoint& at, double volume, std::int64_t id) {
-  using F = Layout<dim>;
-  // a body that turns does so about z
-  const double cx = body.origin[0] + 0.5 * body.size[0];
-  const double cy = body.origin[1] + 0.5 * body.size[1];
-  const std::array<double, 3> turning{-body.spin * (x[1] - cy), body.spin * (x[0] - cx), 0.0};
-  for (std::size_t i = 0; i < dim; ++i) {
-    points.append(F::x + i, x[i]);
-    points.append(F::v + i, body.velocity[i] + turning[i]);
-    for (std::size_t j = 0; j < dim; ++j)
-      points.append(F::L + dim * i + j, i == 0 && j == 1   ? -body.spin
-                                        : i == 1 && j == 0 ? body.spin
-                                                           : 0.0);
-  }
-  for (std::size_t k = 0; k < F::components; ++k) points.append(F::stress + k, at.stress.c[k]);
-  points.append(F::rho, at.density);
-  points.append(F::mass, at.density * volume);
-  for (std::size_t k = 0; k < at.state.size(); ++k) points.append(F::state + k, at.state[k]);
-  if (points.shear_strain != 0) points.append(points.shear_strain, 0.0);
-  if (points.splits_stress()) {
-    points.append(points.force_stress[0], mean(at.stress));
-    points.append(points.force_stress[2], 0.0);
-  }
-  if (points.damps())
-    for (std::size_t k = 0; k < points.force_stress.size(); ++k)
-      points.append(points.force_stress[k],
-                    at.stress.c[dim == 2 && k == 2 ? 3 : k]);  // xx, yy, xy of the plane
-  if (points.affine != F::L)
-    for (std::size_t k = 0; k < F::gradient; ++k)
-      points.append(points.affine + k, points[F::L + k][points.id.size()]);
-  points.id.push_back(id);
-  ++points.count;
-}
-
 /// The weight of bodies upon a body, per area [Pa]. Bodies are looked up column by column: those
 /// that stand over a place without a gap, from the body's top to a free surface.
 class Load {
@@ -147,6 +111,37 @@ bool behind_a_surface(const std::vector<Surface>& surfaces, const std::array<dou
 }
 
 }  // namespace
+
+template <int dim>
+void add_point(PointsOf<dim>& points, const std::array<double, dim>& x,
+               const std::array<double, dim>& velocity, double spin, const InitialPoint& at,
+               double volume, std::int64_t id) {
+  using F = Layout<dim>;
+  for (std::size_t i = 0; i < dim; ++i) {
+    points.append(F::x + i, x[i]);
+    points.append(F::v + i, velocity[i]);
+    for (std::size_t j = 0; j < dim; ++j)
+      points.append(F::L + dim * i + j, i == 0 && j == 1 ? -spin : i == 1 && j == 0 ? spin : 0.0);
+  }
+  for (std::size_t k = 0; k < F::components; ++k) points.append(F::stress + k, at.stress.c[k]);
+  points.append(F::rho, at.density);
+  points.append(F::mass, at.density * volume);
+  for (std::size_t k = 0; k < at.state.size(); ++k) points.append(F::state + k, at.state[k]);
+  if (points.shear_strain != 0) points.append(points.shear_strain, 0.0);
+  if (points.splits_stress()) {
+    points.append(points.force_stress[0], mean(at.stress));
+    points.append(points.force_stress[2], 0.0);
+  }
+  if (points.damps())
+    for (std::size_t k = 0; k < points.force_stress.size(); ++k)
+      points.append(points.force_stress[k],
+                    at.stress.c[dim == 2 && k == 2 ? 3 : k]);  // xx, yy, xy of the plane
+  if (points.affine != F::L)
+    for (std::size_t k = 0; k < F::gradient; ++k)
+      points.append(points.affine + k, points[F::L + k][points.id.size()]);
+  points.id.push_back(id);
+  ++points.count;
+}
 
 double overburden(const Material& material, double ocr, double K0, double g, double z, int steps,
                   double above) {
@@ -244,6 +239,16 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
     });
     return initial(here);
   };
+  const auto put = [&](const std::array<double, dim>& x, const InitialPoint& at, double of_point) {
+    // a body that turns does so about z
+    const double cx = body.origin[0] + 0.5 * body.size[0];
+    const double cy = body.origin[1] + 0.5 * body.size[1];
+    const std::array<double, 3> turning{-body.spin * (x[1] - cy), body.spin * (x[0] - cx), 0.0};
+    std::array<double, dim> velocity;
+    for (std::size_t m = 0; m < dim; ++m) velocity[m] = body.velocity[m] + turning[m];
+    add_point<dim>(points, x, velocity, body.spin, at, of_point,
+                   first_id + static_cast<std::int64_t>(points.count));
+  };
   if constexpr (dim == 3) {
     for (std::int64_t k = 0; body.release && k < lattice[2]; ++k)
       for (std::int64_t i = 0; i < lattice[0]; ++i) {
@@ -259,10 +264,8 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
           const double share = (static_cast<double>(j) + 0.5) / static_cast<double>(count);
           const std::array<double, dim> place{x, ground + share * depth, z};
           if (behind_a_surface<dim>(surfaces, place)) continue;
-          append<dim>(points, place, body,
-                      body.lithostatic ? at_depth((1.0 - share) * depth, 0.0) : uniform,
-                      of_column / static_cast<double>(count),
-                      first_id + static_cast<std::int64_t>(points.count));
+          put(place, body.lithostatic ? at_depth((1.0 - share) * depth, 0.0) : uniform,
+              of_column / static_cast<double>(count));
         }
       }
   }
@@ -290,8 +293,7 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
           here_volume = piece.area;
         }
         if (!within_shape<dim>(body, x) || behind_a_surface<dim>(surfaces, x)) continue;
-        append<dim>(points, x, body, at, here_volume,
-                    first_id + static_cast<std::int64_t>(points.count));
+        put(x, at, here_volume);
       }
   }
   if (points.count == 0)
@@ -309,5 +311,9 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
 
 template PointsOf<2> fill<2>(const Body&, const Scene&, std::int64_t);
 template PointsOf<3> fill<3>(const Body&, const Scene&, std::int64_t);
+template void add_point<2>(PointsOf<2>&, const std::array<double, 2>&, const std::array<double, 2>&,
+                           double, const InitialPoint&, double, std::int64_t);
+template void add_point<3>(PointsOf<3>&, const std::array<double, 3>&, const std::array<double, 3>&,
+                           double, const InitialPoint&, double, std::int64_t);
 
 }  // namespace repose::mpm

@@ -15,6 +15,13 @@ namespace repose::mpm {
 template <int dim>
 PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id);
 
+/// Adds a point to those of a body, without shear strain. `spin`: angular velocity about z of the
+/// velocity gradient it has [rad/s].
+template <int dim>
+void add_point(PointsOf<dim>& points, const std::array<double, dim>& x,
+               const std::array<double, dim>& velocity, double spin, const InitialPoint& at,
+               double volume, std::int64_t id);
+
 /// Vertical stress at depth z below a free surface under gravity g for a density that depends on
 /// pressure, dσ_v/dz = ρ(p) g with p = σ_v(1 + 2K0)/3 [Pa]. `steps` classical Runge–Kutta steps.
 /// `above`: σ_v at z = 0, what rests on the surface [Pa].

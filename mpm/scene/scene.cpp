@@ -113,6 +113,22 @@ double expected_points(const Scene& scene, const Body& body) {
   return points;
 }
 
+Stretch stretch_of(const Scene& scene, const Inflow& inflow) {
+  Stretch stretch{{0.0, 0.0}, {1.0, 1.0}};
+  std::size_t k = 0;
+  for (std::size_t axis = 0; axis < scene.dimensions(); ++axis) {
+    if (axis == inflow.edge / 2) continue;
+    stretch.from[k] = std::max(inflow.from[k], 0.0);
+    stretch.to[k] = std::min(inflow.to[k], scene.domain[axis]);
+    ++k;
+  }
+  return stretch;
+}
+
+double speed_of(const Scene& scene, const Inflow& inflow, double density) {
+  return inflow.speed ? *inflow.speed : *inflow.rate / (density * stretch_of(scene, inflow).area());
+}
+
 bool raise_top_to_cells(Scene& scene) {
   if (is_whole_multiple(scene.domain[1], scene.h)) return false;
   // 12 digits: 0.575, not 0.5750000000000001

@@ -3,6 +3,7 @@
 /// A scene in memory: what a scene file says, SI units, nothing computed yet.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,10 +24,42 @@ struct Wall {
     friction,  ///< unilateral Coulomb contact: no tension, |shear| <= friction × pressure
     open,      ///< material that crosses leaves the simulation and is counted as outflow
     periodic,  ///< left and right only, both: what crosses comes in on the other side
+    parts,     ///< one of the others in each of its parts
+    inflow,    ///< of a part where material comes in: never given, made of an Inflow
+  };
+  /// A stretch of an edge. Its ends along the edge: of floor and top x (in space and z), of left
+  /// and right y (and z), of near and far x and y.
+  struct Part {
+    Kind kind = Kind::slip;
+    double friction = 0.0;
+    double speed = 0.0;  ///< for Kind::inflow, across the edge and inwards [m/s]
+    std::array<double, 2> from{-HUGE_VAL, -HUGE_VAL}, to{HUGE_VAL, HUGE_VAL};  ///< [m]
   };
   Kind kind = Kind::slip;
-  double friction = 0.0;  ///< Coulomb coefficient, for Kind::friction
-  double speed = 0.0;     ///< of the wall along itself, +x or +y, for Kind::no_slip [m/s]
+  double friction = 0.0;      ///< Coulomb coefficient, for Kind::friction
+  double speed = 0.0;         ///< of the wall along itself, +x or +y, for Kind::no_slip [m/s]
+  std::vector<Part> parts{};  ///< for Kind::parts; the first that contains a place holds there
+};
+
+/// The edges by name: across x, y and z, the low one first.
+constexpr std::array<std::string_view, 6> edge_names{"left", "right", "floor",
+                                                     "top",  "near",  "far"};
+
+/// Material that comes in through an edge.
+struct Inflow {
+  std::string name;
+  std::size_t edge = 0;                                                      ///< of edge_names
+  std::array<double, 2> from{-HUGE_VAL, -HUGE_VAL}, to{HUGE_VAL, HUGE_VAL};  ///< as Wall::Part
+  std::size_t body = 0;                   ///< whose law and initial state it has
+  std::optional<double> speed;            ///< along the inward normal [m/s]; or:
+  std::optional<double> rate;             ///< mass per time [kg/s per m], in space [kg/s]
+  double starts = 0.0, stops = HUGE_VAL;  ///< [s]
+};
+
+/// A place that is looked at over time; or where the material point is that is followed.
+struct Probe {
+  std::string name;
+  std::array<double, 3> place{};  ///< [m]
 };
 
 /// A disc of points; with a hole, a ring. In space, the section of an upright cylinder.
@@ -119,12 +152,18 @@ struct Scene {
   Wall left{Wall::Kind::slip};
   Wall right{Wall::Kind::slip};
   Wall top{Wall::Kind::slip};
-  Wall near{Wall::Kind::slip};  ///< at z = 0, in space
-  Wall far{Wall::Kind::slip};   ///< at the other end of z
+  Wall near{Wall::Kind::slip};             ///< at z = 0, in space
+  Wall far{Wall::Kind::slip};              ///< at the other end of z
+  const Wall& edge(std::size_t k) const {  ///< k of edge_names
+    return *std::array{&left, &right, &floor, &top, &near, &far}[k];
+  }
 
   std::vector<Body> bodies;
   std::vector<Surface> surfaces;   ///< rigid; bodies are cut by them
   std::optional<Terrain> terrain;  ///< ground that is one more of them, in space
+  std::vector<Inflow> inflows;
+  std::vector<Probe> probes;   ///< places
+  std::vector<Probe> tracers;  ///< the material points nearest to these places at the start
 
   double h = 0.0;           ///< cell size [m]
   int points_per_cell = 4;  ///< a square number: 1, 4, 9, 16; in space a cube: 1, 8, 27
@@ -206,6 +245,17 @@ std::array<std::int64_t, 3> point_lattice(const Scene& scene, const Body& body);
 /// Raises the top edge of the box to the next whole cell if it stands on none (the paper's 0.56 m
 /// is 89.6 cells). Returns whether it did. The other edges stay: material rests against them.
 bool raise_top_to_cells(Scene& scene);
+
+/// The stretch of an inflow along the directions of its edge, its ends set where they were left out
+/// [m]; the second is 0 to 1 in the plane.
+struct Stretch {
+  std::array<double, 2> from{}, to{};
+  double area() const { return (to[0] - from[0]) * (to[1] - from[1]); }  ///< [m], in space [m²]
+};
+Stretch stretch_of(const Scene& scene, const Inflow& inflow);
+
+/// How fast the material of an inflow comes in, whose density is given [m/s].
+double speed_of(const Scene& scene, const Inflow& inflow, double density);
 
 /// Checks what no single value can tell: bodies inside the box and not overlapping, h that divides
 /// the box, a square points_per_cell, laws that accept their parameters and initial state, nothing

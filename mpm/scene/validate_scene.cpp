@@ -65,6 +65,159 @@ void check_periodic(const Scene& scene) {
                                    ": h <= " + number(scene.domain[0] / min_periodic_cells) + " m");
 }
 
+/// The axes along an edge, 0 to 2; `edge` of edge_names.
+std::vector<std::size_t> axes_along(const Scene& scene, std::size_t edge) {
+  std::vector<std::size_t> axes;
+  for (std::size_t axis = 0; axis < scene.dimensions(); ++axis)
+    if (axis != edge / 2) axes.push_back(axis);
+  return axes;
+}
+
+std::string interval(double from, double to) {
+  return "[" + number(from) + ", " + number(to) + "]";
+}
+
+/// An edge in parts, cut at all their ends into rectangles (in the plane, intervals), in each of
+/// which one part holds.
+class PartsOfEdge {
+ public:
+  PartsOfEdge(const Scene& scene, std::size_t edge)
+      : scene_(scene),
+        parts_(scene.edge(edge).parts),
+        axes_(axes_along(scene, edge)),
+        key_("domain." + std::string(edge_names[edge])) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double length = k < axes_.size() ? scene.domain[axes_[k]] : 1.0;
+      cuts_[k] = {0.0, length};
+      for (const Wall::Part& part : parts_)
+        for (const double end : {part.from[k], part.to[k]})
+          if (end > 0.0 && end < length && k < axes_.size()) cuts_[k].push_back(end);
+      std::sort(cuts_[k].begin(), cuts_[k].end());
+    }
+  }
+
+  void check() const {
+    if (parts_.empty()) throw InputError(key_, "an edge in parts has at least one");
+    for (std::size_t i = 0; i < parts_.size(); ++i) check_part(i);
+    std::vector<char> holds(parts_.size(), 0);
+    each([&](std::size_t i, std::size_t j) {
+      const std::size_t part = at(i, j);
+      if (part == parts_.size())
+        throw InputError(key_, "no part of the edge holds in " + words(i, j));
+      holds[part] = 1;
+    });
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      if (holds[i] == 0)
+        throw InputError(key_of(i),
+                         "this part never holds: it lies beyond the edge, or parts "
+                         "before it hold wherever it is");
+    for (std::size_t k = 0; k < axes_.size(); ++k) check_widths(k);
+  }
+
+ private:
+  std::string key_of(std::size_t part) const { return key_ + "[" + std::to_string(part) + "]"; }
+
+  void check_part(std::size_t i) const {
+    const Wall::Part& part = parts_[i];
+    const std::string key = key_of(i);
+    if (part.kind == Wall::Kind::periodic)
+      throw InputError(key + ".kind", "a part of an edge cannot be periodic");
+    if (part.kind == Wall::Kind::parts || part.kind == Wall::Kind::inflow)
+      throw InputError(key + ".kind", "a part of an edge is no_slip, slip, open or has friction");
+    if (part.kind == Wall::Kind::friction)
+      require(part.friction, not_negative, (key + ".friction").c_str(), "friction");
+    require(part.speed, {}, (key + ".speed").c_str(), "speed");
+    if (part.speed != 0.0 && part.kind != Wall::Kind::no_slip)
+      throw InputError(key + ".speed",
+                       "only a no-slip wall can drag the material along: leave out its speed");
+    for (std::size_t k = 0; k < axes_.size(); ++k)
+      if (!(part.from[k] < part.to[k]))
+        throw InputError(key, "it would begin at " + number(part.from[k]) + " m and end at " +
+                                  number(part.to[k]) + " m");
+  }
+
+  /// Narrower openings have no node that flows freely, and narrower bars no node that holds.
+  void check_widths(std::size_t k) const {
+    const std::size_t other = 1 - k;
+    const std::size_t last = cuts_[k].size() - 2;
+    for (std::size_t j = 0; j + 1 < cuts_[other].size(); ++j)
+      for (std::size_t first = 0, i = 0; i <= last; ++i) {
+        const auto is_open = [&](std::size_t n) {
+          return parts_[k == 0 ? at(n, j) : at(j, n)].kind == Wall::Kind::open;
+        };
+        if (i < last && is_open(i) == is_open(i + 1)) continue;
+        const double from = cuts_[k][first], to = cuts_[k][i + 1];
+        const int ends = (first > 0 ? 1 : 0) + (i < last ? 1 : 0);
+        const int least = ends == 0 ? 0 : is_open(i) ? ends + 1 : 1;
+        if (to - from < (least - lattice_tolerance) * scene_.h)
+          throw InputError(key_, std::string(is_open(i) ? "the opening " : "the closed part ") +
+                                     interval(from, to) + " m is " +
+                                     number((to - from) / scene_.h, 3) +
+                                     " cells wide; it must be " + "at least " +
+                                     std::to_string(least) + " (h = " + number(scene_.h) + " m)");
+        first = i + 1;
+      }
+  }
+
+  template <class F>
+  void each(F&& f) const {
+    for (std::size_t j = 0; j + 1 < cuts_[1].size(); ++j)
+      for (std::size_t i = 0; i + 1 < cuts_[0].size(); ++i)
+        if (cuts_[0][i] < cuts_[0][i + 1] && cuts_[1][j] < cuts_[1][j + 1]) f(i, j);
+  }
+  /// The part that holds in a rectangle; their number if none does.
+  std::size_t at(std::size_t i, std::size_t j) const {
+    const std::array middle{0.5 * (cuts_[0][i] + cuts_[0][i + 1]),
+                            0.5 * (cuts_[1][j] + cuts_[1][j + 1])};
+    for (std::size_t part = 0; part < parts_.size(); ++part) {
+      bool inside = true;
+      for (std::size_t k = 0; k < axes_.size(); ++k)
+        inside = inside && middle[k] > parts_[part].from[k] && middle[k] < parts_[part].to[k];
+      if (inside) return part;
+    }
+    return parts_.size();
+  }
+  std::string words(std::size_t i, std::size_t j) const {
+    std::string text;
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+      const std::size_t n = k == 0 ? i : j;
+      text += (k == 0 ? "" : ", ") + std::string(1, static_cast<char>('x' + axes_[k])) + " = " +
+              interval(cuts_[k][n], cuts_[k][n + 1]);
+    }
+    return text + " m";
+  }
+
+  const Scene& scene_;
+  const std::vector<Wall::Part>& parts_;
+  std::vector<std::size_t> axes_;
+  std::string key_;
+  std::array<std::vector<double>, 2> cuts_;
+};
+
+void check_parts(const Scene& scene) {
+  for (std::size_t edge = 0; edge < 2 * scene.dimensions(); ++edge) {
+    const Wall& wall = scene.edge(edge);
+    const std::string key = "domain." + std::string(edge_names[edge]);
+    if (wall.kind == Wall::Kind::inflow)
+      throw InputError(key, "what comes in is an inflow of the scene, not a kind of edge");
+    if (wall.kind != Wall::Kind::parts) continue;
+    PartsOfEdge(scene, edge).check();
+    const std::string but = "an edge in parts does not go with ";
+    if (scene.left.kind == Wall::Kind::periodic) throw InputError(key, but + "periodic edges yet");
+    if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
+      throw InputError("step.transfer", but + "transfer = \"" +
+                                            std::string(name_of(scene.transfer)) +
+                                            "\" yet; any other transfer does");
+    if (scene.viscosity == Viscosity::implicit_solve)
+      throw InputError("step.viscosity", but + "viscosity = \"implicit\" yet");
+    for (const Wall::Part& part : wall.parts)
+      if (scene.dimensions() == 3 && part.speed != 0.0)
+        throw InputError(key,
+                         "a wall that moves is for plane strain only: this scene has three "
+                         "dimensions");
+  }
+}
+
 void check_numbers(const Scene& scene) {
   require(scene.end_time, not_negative, "scene.end_time", "end_time");
   require(scene.gravity, not_negative, "scene.gravity", "gravity");
@@ -410,6 +563,88 @@ void check_terrain(const Scene& scene) {
                                          " m lower than the box's floor in places");
 }
 
+void check_inflow(const Scene& scene, std::size_t i) {
+  const Inflow& inflow = scene.inflows[i];
+  const std::string path = "inflow[" + std::to_string(i) + "].";
+  const auto refuse = [&](const char* key, const std::string& why) {
+    throw InputError(path + key, why);
+  };
+  if (inflow.edge >= 2 * scene.dimensions())
+    refuse("edge", "near and far are edges of a scene in space");
+  if (inflow.body >= scene.bodies.size()) refuse("body", "there is no such body");
+  if (inflow.speed.has_value() == inflow.rate.has_value())
+    refuse(inflow.speed ? "rate" : "speed",
+           "give either speed or rate: the other follows from the density and the width");
+  const double given = inflow.speed.value_or(inflow.rate.value_or(0.0));
+  require(given, positive, (path + (inflow.speed ? "speed" : "rate")).c_str(),
+          inflow.speed ? "speed" : "rate");
+  require(inflow.starts, not_negative, (path + "starts").c_str(), "starts");
+  if (!(inflow.stops > inflow.starts))
+    refuse("stops", "it would end at " + number(inflow.stops) + " s, before it begins at " +
+                        number(inflow.starts) + " s");
+  const Stretch stretch = stretch_of(scene, inflow);
+  for (std::size_t k = 0; k + 1 < scene.dimensions(); ++k) {
+    if (!(stretch.from[k] < stretch.to[k]))
+      refuse("from", "it would begin at " + number(stretch.from[k]) + " m and end at " +
+                         number(stretch.to[k]) + " m");
+    for (const auto& [end, key] : {std::pair{stretch.from[k], "from"}, {stretch.to[k], "to"}})
+      if (std::abs(end / scene.h - std::round(end / scene.h)) > lattice_tolerance)
+        refuse(key, "an inflow begins and ends at whole cells of h = " + number(scene.h) +
+                        " m: " + number(end) + " m is " + number(end / scene.h, 6) + "; " +
+                        good_lengths(end, scene.h) + " m would do");
+  }
+  for (std::size_t j = 0; j < i; ++j) {
+    const Inflow& other = scene.inflows[j];
+    const Stretch there = stretch_of(scene, other);
+    const bool apart = other.edge != inflow.edge || other.stops <= inflow.starts ||
+                       inflow.stops <= other.starts || there.to[0] <= stretch.from[0] ||
+                       stretch.to[0] <= there.from[0] || there.to[1] <= stretch.from[1] ||
+                       stretch.to[1] <= there.from[1];
+    if (!apart) refuse("from", "it overlaps inflow[" + std::to_string(j) + "]");
+  }
+  const Body& body = scene.bodies[inflow.body];
+  if (body.lithostatic)
+    refuse("body",
+           "what comes in has the body's initial state, and this body's is lithostatic: "
+           "another at every depth");
+  const std::string but = "material that comes in does not go with ";
+  if (scene.edge(inflow.edge).kind == Wall::Kind::periodic ||
+      scene.left.kind == Wall::Kind::periodic)
+    refuse("edge", but + "periodic edges yet");
+  if (scene.transfer == Transfer::xpic || scene.transfer == Transfer::fmpm)
+    throw InputError("step.transfer", but + "transfer = \"" + std::string(name_of(scene.transfer)) +
+                                          "\" yet; any other transfer does");
+  if (scene.viscosity == Viscosity::implicit_solve)
+    throw InputError("step.viscosity", but + "viscosity = \"implicit\" yet");
+  // how many come in until the end
+  double density = 0.0;
+  try {
+    density = make_material(body.law)->initial(body.initial).density;
+  } catch (const InputError&) {
+    return;  // told of the body
+  }
+  const double time = std::min(inflow.stops, scene.end_time) - inflow.starts;
+  const double spacing = point_spacing(scene);
+  const double points = std::max(time, 0.0) * speed_of(scene, inflow, density) * stretch.area() /
+                        std::pow(spacing, scene.dimensions());
+  if (!(points <= max_points))
+    refuse(inflow.speed ? "speed" : "rate",
+           number(points, 3) + " points would come in, more than memory is likely to hold (" +
+               number(max_points) + ")");
+}
+
+void check_places(const Scene& scene, const std::vector<Probe>& places, const char* table) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::string path = std::string(table) + "[" + std::to_string(i) + "].";
+    for (std::size_t k = 0; k < scene.dimensions(); ++k)
+      if (!(places[i].place[k] >= 0.0 && places[i].place[k] <= scene.domain[k]))
+        throw InputError(path + "place", "the place lies outside of the box");
+    for (std::size_t j = 0; j < i; ++j)
+      if (places[i].name == places[j].name)
+        throw InputError(path + "name", "there are two of the name \"" + places[i].name + "\"");
+  }
+}
+
 void check_polygons(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
@@ -541,6 +776,7 @@ void validate(const Scene& scene) {
   check_numbers(scene);
   check_cells(scene);
   check_periodic(scene);
+  check_parts(scene);
   check_terrain(scene);
   check_geometry(scene);
   check_discs(scene);
@@ -548,6 +784,9 @@ void validate(const Scene& scene) {
   check_surfaces(scene);
   check_overlap(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
+  for (std::size_t i = 0; i < scene.inflows.size(); ++i) check_inflow(scene, i);
+  check_places(scene, scene.probes, "probe");
+  check_places(scene, scene.tracers, "tracer");
   check_space(scene);
   check_extension(scene);
   check_viscosity(scene);

@@ -10,12 +10,10 @@ namespace {
 struct Edge {
   std::string_view name;
   Wall Scene::*of_scene;
-  Wall Walls::*of_walls;
 };
-constexpr std::array<Edge, 6> edges{
-    Edge{"floor", &Scene::floor, &Walls::floor}, Edge{"left", &Scene::left, &Walls::left},
-    Edge{"right", &Scene::right, &Walls::right}, Edge{"top", &Scene::top, &Walls::top},
-    Edge{"near", &Scene::near, &Walls::near},    Edge{"far", &Scene::far, &Walls::far}};
+constexpr std::array<Edge, 6> edges{Edge{"floor", &Scene::floor}, Edge{"left", &Scene::left},
+                                    Edge{"right", &Scene::right}, Edge{"top", &Scene::top},
+                                    Edge{"near", &Scene::near},   Edge{"far", &Scene::far}};
 
 }  // namespace
 
@@ -69,7 +67,7 @@ void Simulation::Impl<dim>::set_wall(std::string_view name, const Wall& wall) {
   changed.*(edge->of_scene) = wall;
   validate(changed);
   scene = changed;
-  walls.*(edge->of_walls) = wall;
+  walls = walls_now();
   highest_energy = std::max(highest_energy, energy_bound());
 }
 

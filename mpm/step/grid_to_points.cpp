@@ -105,20 +105,36 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
   // a closed wall is never crossed: the interpolated velocity vanishes on it, and what round-off or
   // an impact faster than one cell per step does is undone here and counted
   const double hair = 1e-9 * grid.h();
-  const auto keep = [&](double& x, double upper, const Wall& low, const Wall& high, bool counts) {
+  const auto place = [&](std::size_t slot) {
+    std::array<double, dim> x;
+    for (std::size_t i = 0; i < dim; ++i) x[i] = points.data(Layout<dim>::x + i)[slot];
+    return x;
+  };
+  const auto is_open = [&](const Wall& wall, std::size_t axis, std::size_t slot) {
+    if (wall.kind != Wall::Kind::parts) return wall.kind == Wall::Kind::open;
+    return WallParts<dim>(wall, axis, grid).open_at(place(slot));
+  };
+  // the velocity of an opening reaches beyond its lip, where what it leads through is put back
+  const auto counts_there = [&](const Wall& wall, std::size_t axis, std::size_t slot) {
+    return wall.kind != Wall::Kind::parts ||
+           !WallParts<dim>(wall, axis, grid).open_near(place(slot));
+  };
+  const auto keep = [&](std::size_t axis, std::size_t slot, double upper, bool counts) {
+    double& x = points.data(Layout<dim>::x + axis)[slot];
+    const Wall &low = walls.low(axis), &high = walls.high(axis);
     if (low.kind == Wall::Kind::periodic) return;  // wrapped when points are sorted
     if (x < hair) {
-      if (low.kind == Wall::Kind::open) {
+      if (is_open(low, axis, slot)) {
         sums.outflow = sums.outflow || x < 0.0;
       } else {
-        if (x < 0.0 && counts) ++sums.corrections;
+        if (x < 0.0 && counts && counts_there(low, axis, slot)) ++sums.corrections;
         x = hair;
       }
     } else if (x > upper - hair) {
-      if (high.kind == Wall::Kind::open) {
+      if (is_open(high, axis, slot)) {
         sums.outflow = sums.outflow || x > upper;
       } else {
-        if (x > upper && counts) ++sums.corrections;
+        if (x > upper && counts && counts_there(high, axis, slot)) ++sums.corrections;
         x = upper - hair;
       }
     }
@@ -146,9 +162,7 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
     }
     if (!any(near_wall)) continue;
     for (std::size_t lane = 0; lane < Pack::size; ++lane)
-      for (std::size_t i = 0; i < dim; ++i)
-        keep(points.data(Layout<dim>::x + i)[s + lane], end[i], walls.low(i), walls.high(i),
-             k + lane < range.count);
+      for (std::size_t i = 0; i < dim; ++i) keep(i, s + lane, end[i], k + lane < range.count);
   }
 }
 

@@ -2,7 +2,7 @@
 /// \file
 /// Where the energy went. All in J per metre of depth, accumulated step by step:
 ///   kinetic + potential + elastic + dissipated + transfer_loss + wall_loss + outflow
-///   + residual = start
+///   + residual = start + inflow
 ///
 /// The step is a leapfrog: velocities belong to half steps, positions and stresses to whole ones.
 /// At a whole step the velocity is that of the points, u, plus half a kick, u + ½Δt F/m, and its
@@ -28,8 +28,11 @@ struct Ledger {
   double outflow = 0.0;        ///< kinetic + potential + elastic energy carried out
   double outflow_elastic = 0.0;
   double outflow_mass = 0.0;  ///< [kg/m]
-  double kinetic = 0.0;       ///< Σ½mv² of the points, after the last step
-  double power = 0.0;         ///< −ΣVσ:L + Σmg·v of the points, after the last step [W/m]
+  double inflow = 0.0;        ///< kinetic + potential + elastic energy that came in
+  double inflow_elastic = 0.0;
+  double inflow_mass = 0.0;  ///< [kg/m]
+  double kinetic = 0.0;      ///< Σ½mv² of the points, after the last step
+  double power = 0.0;        ///< −ΣVσ:L + Σmg·v of the points, after the last step [W/m]
 };
 
 }  // namespace repose::mpm

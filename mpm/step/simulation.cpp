@@ -37,13 +37,11 @@ template <int dim>
 Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, int thread_count)
     : scene(given),
       gravity(gravity_of<dim>(given)),
-      walls{given.left, given.right, given.floor, given.top, given.near, given.far},
       contact(rigid_surfaces(given)),
       grid(given.h, cells<dim>(given)),
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       prescribed(by_program) {
-  std::int64_t next_id = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     try {
@@ -55,6 +53,29 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     body_names.push_back(body.name.empty() ? fmt::format("body[{}]", b) : body.name);
     initial_height = std::max(initial_height, body.origin[1] + body.size[1]);
   }
+  for (const Probe& tracer : scene.tracers) {
+    double nearest = HUGE_VAL;
+    traced.push_back(-1);
+    for (const PointsOf<dim>& points : bodies)
+      for (std::size_t s = 0; s < points.slots(); ++s) {
+        double r2 = 0.0;
+        for (std::size_t i = 0; i < dim; ++i) {
+          const double d = points[Layout<dim>::x + i][s] - tracer.place[i];
+          r2 += d * d;
+        }
+        if (!(r2 < nearest)) continue;
+        nearest = r2;
+        traced.back() = points.id[s];
+      }
+  }
+  for (const Inflow& inflow : scene.inflows) {
+    const Body& body = scene.bodies[inflow.body];
+    const InitialPoint state = bodies[inflow.body].material->initial(body.initial);
+    entries.push_back({state, speed_of(scene, inflow, state.density), 0});
+  }
+  if (!scene.inflows.empty() && prescribed.acceleration)
+    throw InputError("inflow", "material that comes in has no prescribed acceleration");
+  walls = walls_now();
   for (PointsOf<dim>& points : bodies)
     if (prescribed.material) points.material = prescribed.material;
   if constexpr (dim == 2) {
@@ -87,9 +108,14 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
 template <int dim>
 double Simulation::Impl<dim>::energy_bound() const {
   // the work of these has no bound
-  const auto drags = [](const Wall& wall) { return wall.speed != 0.0; };
-  if (prescribed.acceleration || (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) ||
-      drags(walls.right) || drags(walls.floor) || drags(walls.top) ||
+  const auto drags = [](const Wall& wall) {
+    return wall.speed != 0.0 ||
+           std::any_of(wall.parts.begin(), wall.parts.end(),
+                       [](const Wall::Part& part) { return part.speed != 0.0; });
+  };
+  if (prescribed.acceleration || !scene.inflows.empty() ||
+      (walls.periodic() && gravity[0] != 0.0) || drags(walls.left) || drags(walls.right) ||
+      drags(walls.floor) || drags(walls.top) ||
       std::any_of(scene.surfaces.begin(), scene.surfaces.end(),
                   [](const Surface& surface) { return surface.moves(); }))
     return HUGE_VAL;
@@ -104,34 +130,39 @@ double Simulation::Impl<dim>::energy_bound() const {
 
 template <int dim>
 Signals Simulation::Impl<dim>::initial_signals() const {
+  Signals found;
+  for (const PointsOf<dim>& points : bodies) found.include(signals_of(points));
+  return found;
+}
+
+template <int dim>
+Signals Simulation::Impl<dim>::signals_of(const PointsOf<dim>& points) const {
   using F = Layout<dim>;
   Signals found;
   std::vector<double> modulus, viscosity, zero;
-  for (const PointsOf<dim>& points : bodies) {
-    // the viscosity at rest comes with an update, which must not count
-    points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const SlotRange& range) {
-      const std::size_t n = padded(range.count);
-      modulus.resize(n);
-      zero.assign(n, 0.0);
-      viscosity.assign(n, 0.0);
-      typename PointsOf<dim>::Batch batch = part.batch(range);
-      part.material->modulus(batch, modulus.data());
-      if (!part.material->law().has_stress_memory && !part.splits_stress()) {
-        batch.dt = 1.0;
-        batch.strain.fill(zero.data());
-        batch.viscosity = viscosity.data();
-        part.material->update(batch);
-      }
-      for (std::size_t k = 0; k < range.count; ++k) {
-        const std::size_t s = first + k;
-        if (points.id[s] < 0) continue;
-        const double speed = std::sqrt(squared_speed(points, s));
-        const double rho = points[F::rho][s];
-        found.include({speed, speed + points.damped_signal * std::sqrt(modulus[k] / rho),
-                       2.0 * dim * viscosity[k] / (rho * grid.h() * grid.h())});
-      }
-    });
-  }
+  // the viscosity at rest comes with an update, which must not count
+  points.copy_in_parts([&](std::size_t first, PointsOf<dim>& part, const SlotRange& range) {
+    const std::size_t n = padded(range.count);
+    modulus.resize(n);
+    zero.assign(n, 0.0);
+    viscosity.assign(n, 0.0);
+    typename PointsOf<dim>::Batch batch = part.batch(range);
+    part.material->modulus(batch, modulus.data());
+    if (!part.material->law().has_stress_memory && !part.splits_stress()) {
+      batch.dt = 1.0;
+      batch.strain.fill(zero.data());
+      batch.viscosity = viscosity.data();
+      part.material->update(batch);
+    }
+    for (std::size_t k = 0; k < range.count; ++k) {
+      const std::size_t s = first + k;
+      if (points.id[s] < 0) continue;
+      const double speed = std::sqrt(squared_speed(points, s));
+      const double rho = points[F::rho][s];
+      found.include({speed, speed + points.damped_signal * std::sqrt(modulus[k] / rho),
+                     2.0 * dim * viscosity[k] / (rho * grid.h() * grid.h())});
+    }
+  });
   return found;
 }
 
@@ -190,6 +221,8 @@ Simulation::Counters Simulation::counters() const {
   return visit([](const auto& s) { return s.counters(); });
 }
 
+template Signals Simulation::Impl<2>::signals_of(const PointSet&) const;
+template Signals Simulation::Impl<3>::signals_of(const PointsOf<3>&) const;
 template double Simulation::Impl<2>::energy_bound() const;
 template double Simulation::Impl<3>::energy_bound() const;
 template Simulation::Impl<2>::Impl(const Scene&, const Prescribed&, int);

@@ -50,6 +50,7 @@ struct SeriesRow {
   double work_residual_J_per_m;    ///< of that: stress work that no line accounts for
   double mass_kg_per_m;
   double outflow_kg_per_m;                    ///< mass that has left through open edges
+  double inflow_kg_per_m;                     ///< mass that has come in
   double momentum_x, momentum_y, momentum_z;  ///< [kg m/s per m]
   /// About the origin, of which the plane has z, the affine velocity included [kg m²/s per m]
   double angular_momentum, angular_momentum_x, angular_momentum_y;
@@ -151,6 +152,21 @@ class Simulation {
     std::vector<double> velocity;    ///< [m/s]
   };
   NodeFields node_fields() const;
+
+  /// What is at a place.
+  struct Sight {
+    double depth = 0.0;  ///< solid depth of the column there: its mass over ρ_0 [m]
+    /// Mass of the points within a cell, weighted (probes.cpp) [kg/m], in space [kg]; 0: nothing is
+    /// there, nor in what follows
+    double mass = 0.0;
+    std::array<double, 3> position{};  ///< of a tracer; of a probe, the place [m]
+    std::array<double, 3> velocity{};  ///< [m/s]
+    double pressure = 0.0, q = 0.0;    ///< p and √(3/2 s:s) [Pa]
+    double density = 0.0;              ///< [kg/m³]
+  };
+  Sight look_at(const std::array<double, 3>& place) const;
+  /// The material point that a tracer of the scene follows; without mass once it has left the box.
+  Sight tracer(std::size_t k) const;
 
   /// Goes on under another gravity, as Scene::gravity and tilt_deg [m/s²], [°]. The potential
   /// energy that this gives to the points counts as there from the start, so that the ledger still

@@ -8,7 +8,7 @@
 
 #include "mpm/boundary/periodic.hpp"
 #include "mpm/boundary/rigid_contact.hpp"
-#include "mpm/boundary/walls.hpp"
+#include "mpm/boundary/wall_parts.hpp"
 #include "mpm/grid/grid.hpp"
 #include "mpm/step/flow_maps.hpp"
 #include "mpm/step/implicit_viscosity.hpp"
@@ -37,6 +37,7 @@ class Simulation::Impl {
   void step(double stop_at);
 
   // --- the algorithm box, one function per stage ---
+  void let_in();  ///< rows of points that have come in through an edge
   void sort_if_needed();
   double choose_step(double stop_at) const;
   void points_to_grid();             ///< P2G: mass, momentum, internal force of every block's tile
@@ -54,6 +55,8 @@ class Simulation::Impl {
   Deposit deposit() const;
   std::int64_t live_cells() const;
   Snapshot snapshot() const;
+  Sight look_at(const std::array<double, 3>& place) const;
+  Sight tracer(std::size_t k) const;
   PointFields point_fields() const;
   NodeFields node_fields();
   void set_gravity(double gravity, double tilt_deg);
@@ -68,6 +71,9 @@ class Simulation::Impl {
   };
   Energies energies();
   Signals initial_signals() const;
+  Signals signals_of(const PointsOf<dim>& points) const;
+  /// The edges as they are now: in parts where material comes in.
+  Walls walls_now() const;
   /// All that could ever become motion: every point in the lowest corner of the box, unstressed,
   /// and the round-off of its wave energy where there is nothing else. HUGE_VAL where something
   /// works on the points without bound.
@@ -86,6 +92,16 @@ class Simulation::Impl {
   GridOf<dim> grid;
   mutable tbb::task_arena arena;
   int threads;
+
+  /// Of every inflow: what its points are, how fast they come, rows made so far
+  struct Entry {
+    InitialPoint state;
+    double speed;
+    std::int64_t rows = 0;
+  };
+  std::vector<Entry> entries;
+  std::int64_t next_id = 0;          ///< of the next point to be made
+  std::vector<std::int64_t> traced;  ///< points that tracers follow
 
   Prescribed prescribed;
   std::vector<double> start_x, start_y;  ///< by point id, if an acceleration is prescribed [m]
@@ -186,6 +202,9 @@ class Simulation::Impl {
   /// What the scene's transfer keeps over a step.
   Retention retention(double dt) const;
   void remove_outflow();
+  bool flows(std::size_t inflow) const {
+    return time >= scene.inflows[inflow].starts && time < scene.inflows[inflow].stops;
+  }
   double initial_power() const;
   /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].
   double power_of(const PointsOf<dim>& points, std::size_t slot, double dt) const;

@@ -12,6 +12,7 @@ namespace repose::mpm {
 template <int dim>
 void Simulation::Impl<dim>::step(double stop_at) {
   if (!(stop_at > time)) return;  // never backwards
+  let_in();
   sort_if_needed();
   const double dt = choose_step(stop_at);
   if (!tiles_are_current) points_to_grid();

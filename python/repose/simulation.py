@@ -203,11 +203,11 @@ class Simulation:
     def tilt_deg(self, tilt_deg: float) -> None:
         self._sim.set_gravity(self.gravity, arguments.number("tilt_deg", tilt_deg))
 
-    def set_wall(self, edge: str, wall: str | Mapping) -> None:
+    def set_wall(self, edge: str, wall: str | Mapping | Sequence[Mapping]) -> None:
         """Goes on with another edge: "floor", "left", "right", "top" ("near", "far"); wall as in
-        [domain], "slip", "no_slip", "open", {"friction": 0.4}, {"speed": 0.1}."""
+        [domain], "slip", "no_slip", "open", {"friction": 0.4}, {"speed": 0.1}, or a list of parts."""
         arguments.text("set_wall: edge", edge)
-        if not isinstance(wall, str):
+        if not isinstance(wall, (str, list, tuple)):
             arguments.table("set_wall: wall, unless a text,", wall)
         text = document({"domain": {edge: wall}})
         self._sim.set_wall(edge, _core.Input.table(text, "set_wall", []))

@@ -62,19 +62,50 @@ Axis colour_scale(const HeapPicture& picture, std::string& subtitle) {
   return colours;
 }
 
+/// The rest of an edge from 0 to `length` at `at` across it, without its openings; `level`: it lies
+/// along x.
+std::vector<std::array<double, 2>> closed(const HeapPicture& picture, bool level, double at,
+                                          double length) {
+  std::vector<std::array<double, 2>> rest;
+  double from = 0.0;
+  const std::size_t across = level ? 1 : 0;
+  for (const auto& [begin, end] : picture.openings) {
+    if (begin[across] != at || end[across] != at) continue;
+    if (begin[1 - across] > from) rest.push_back({from, begin[1 - across]});
+    from = end[1 - across];
+  }
+  if (from < length) rest.push_back({from, length});
+  return rest;
+}
+
 void draw_box(Axes& axes, const HeapPicture& picture, double wall) {
   const double w = picture.width_m, h = picture.height_m;
   Style solid;
   solid.colour = Colour::grey;
-  const std::array<double, 2> floor_x{-wall, w + wall}, left_x{-wall, 0.0}, right_x{w, w + wall};
-  const std::array<double, 2> zero{0.0, 0.0}, below{-wall, -wall}, above{h, h};
-  axes.band("", floor_x, below, zero, solid);
-  axes.band("", left_x, zero, above, solid);
-  axes.band("", right_x, zero, above, solid);
+  const std::array<double, 2> zero{0.0, 0.0}, below{-wall, -wall};
+  for (auto [from, to] : closed(picture, true, 0.0, w)) {
+    from = from == 0.0 ? -wall : from;
+    to = to == w ? w + wall : to;
+    axes.band("", std::array{from, to}, below, zero, solid);
+  }
+  for (const double x : {0.0, w})
+    for (const auto& [from, to] : closed(picture, false, x, h))
+      axes.band("", std::array{x == 0.0 ? -wall : w, x == 0.0 ? 0.0 : w + wall},
+                std::array{from, from}, std::array{to, to}, solid);
   Style inner;
   inner.colour = Colour::black;
   inner.width_px = 1.6;
-  axes.line("", std::array{0.0, 0.0, w, w}, std::array{h, 0.0, 0.0, h}, inner);
+  if (picture.openings.empty()) {
+    axes.line("", std::array{0.0, 0.0, w, w}, std::array{h, 0.0, 0.0, h}, inner);
+    return;
+  }
+  for (const auto& [from, to] : closed(picture, true, 0.0, w))
+    axes.line("", std::array{from, to}, zero, inner);
+  for (const double x : {0.0, w})
+    for (const auto& [from, to] : closed(picture, false, x, h))
+      axes.line("", std::array{x, x}, std::array{from, to}, inner);
+  for (const auto& [from, to] : picture.openings)
+    axes.dashed("", std::array{from[0], to[0]}, std::array{from[1], to[1]}, inner);
 }
 
 void draw_surfaces(Axes& axes, const HeapPicture& picture) {
@@ -128,6 +159,41 @@ void write_heap_picture(const std::filesystem::path& path, const HeapPicture& pi
   figure.render_svg(path);
 }
 
+namespace {
+
+/// The open stretches of the edges that a picture at z shows, in space where its plane cuts them.
+std::vector<std::array<std::array<double, 2>, 2>> openings_of(const mpm::Scene& scene, double z) {
+  std::vector<std::array<std::array<double, 2>, 2>> found;
+  for (std::size_t edge = 0; edge < 4; ++edge) {
+    const mpm::Wall& wall = scene.edge(edge);
+    if (wall.kind != mpm::Wall::Kind::parts) continue;
+    const std::size_t along = edge < 2 ? 1 : 0;
+    const double length = scene.domain[along], across = scene.domain[1 - along];
+    std::vector<double> ends{0.0, length};
+    for (const mpm::Wall::Part& part : wall.parts)
+      for (const double end : {part.from[0], part.to[0]})
+        if (end > 0.0 && end < length) ends.push_back(end);
+    std::sort(ends.begin(), ends.end());
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      const double middle = 0.5 * (ends[k] + ends[k + 1]);
+      const auto holds =
+          std::find_if(wall.parts.begin(), wall.parts.end(), [&](const mpm::Wall::Part& part) {
+            return middle >= part.from[0] && middle < part.to[0] && z >= part.from[1] &&
+                   z < part.to[1];
+          });
+      if (holds == wall.parts.end() || holds->kind != mpm::Wall::Kind::open) continue;
+      const double at = edge % 2 == 0 ? 0.0 : across;
+      if (along == 0)
+        found.push_back({{{ends[k], at}, {ends[k + 1], at}}});
+      else
+        found.push_back({{{at, ends[k]}, {at, ends[k + 1]}}});
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
 bool draw_final_picture(const input::SceneFile& file, const mpm::Simulation& simulation,
                         const std::filesystem::path& path) {
   const mpm::Scene& scene = file.scene;
@@ -160,6 +226,7 @@ bool draw_final_picture(const input::SceneFile& file, const mpm::Simulation& sim
   picture.value_label = mises ? "von Mises stress (kPa)" : "density (kg/m³)";
   picture.point_spacing_m = mpm::point_spacing(scene);
   if (scene.gravity > 0.0) picture.tilt_deg = scene.tilt_deg;
+  picture.openings = openings_of(scene, plane);
   for (const mpm::Surface& surface : scene.surfaces) {
     mpm::Polygon outline =
         surface.outline(simulation.time(), plane, {0.0, 0.0}, {scene.domain[0], scene.domain[1]});

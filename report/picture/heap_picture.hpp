@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -23,6 +24,8 @@ struct HeapPicture {
   /// Gravity is turned by this angle towards +x; drawn as an arrow. Absent: none is drawn.
   std::optional<double> tilt_deg{};
   std::vector<mpm::Polygon> surfaces;  // outlines of what is rigid
+  /// Where an edge of the box is open: two ends, in the plane of the picture.
+  std::vector<std::array<std::array<double, 2>, 2>> openings{};
 };
 
 /// Draws the points coloured by value in their box, to scale, as SVG. If a few extreme values would

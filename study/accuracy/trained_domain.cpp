@@ -138,6 +138,7 @@ std::vector<std::string> beyond_training(const mpm::Scene& scene) {
   const mpm::Body& body = scene.bodies.front();
   if (body.disc) reasons.emplace_back("a round body");
   if (body.polygon) reasons.emplace_back("a body cut to a polygon");
+  if (!scene.inflows.empty()) reasons.emplace_back("material that comes in");
   if (!scene.surfaces.empty()) reasons.emplace_back("rigid surfaces");
   if (body.origin[0] > 0.0 || body.origin[1] > 0.0)
     reasons.emplace_back("a body away from the left wall or the floor");
@@ -150,6 +151,8 @@ std::vector<std::string> beyond_training(const mpm::Scene& scene) {
   using Kind = mpm::Wall::Kind;
   if (scene.floor.kind == Kind::friction)  // its charts were made before its impulses were whole
     reasons.emplace_back("a floor with friction");
+  else if (scene.floor.kind == Kind::parts)
+    reasons.emplace_back("a floor in parts");
   else if (scene.floor.kind != Kind::no_slip)
     reasons.emplace_back("a floor that is not no-slip");
   if (scene.floor.speed != 0.0) reasons.emplace_back("a floor that moves");

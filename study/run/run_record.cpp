@@ -75,7 +75,8 @@ std::vector<std::string> series_columns(std::size_t dimensions) {
                                    "separation_J_per_m",
                                    "averaging_loss_J_per_m",
                                    "density_floor_J_per_m",
-                                   "work_residual_J_per_m"};
+                                   "work_residual_J_per_m",
+                                   "inflow_kg_per_m"};
   if (dimensions == 2) return columns;
   for (std::string& column : columns) column = named(column, dimensions);
   for (std::string& column : columns)
@@ -113,7 +114,8 @@ std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensi
                              row.separation_J_per_m,
                              row.averaging_loss_J_per_m,
                              row.density_floor_J_per_m,
-                             row.work_residual_J_per_m};
+                             row.work_residual_J_per_m,
+                             row.inflow_kg_per_m};
   if (dimensions == 3)
     values.insert(values.end(), {row.angular_momentum_x, row.angular_momentum_y, row.momentum_z});
   return values;
@@ -172,11 +174,13 @@ double RunRecord::energy_error(const mpm::SeriesRow& last) const {
 }
 
 std::int64_t RunRecord::lost_points(std::int64_t present, const mpm::SeriesRow& last) const {
-  // What has left through an open edge is known by its mass: a quarter of a point is far above the
-  // round-off of the sums, and below the mass of any whole point.
-  const double missing = initial_mass_kg_per_m - last.mass_kg_per_m - last.outflow_kg_per_m;
+  // What has left through an open edge, or come in, is known by its mass: a quarter of a point is
+  // far above the round-off of the sums, and below the mass of any whole point.
+  const double missing =
+      initial_mass_kg_per_m + last.inflow_kg_per_m - last.mass_kg_per_m - last.outflow_kg_per_m;
   const double point = initial_mass_kg_per_m / static_cast<double>(initial_points);
-  const bool accounted = last.outflow_kg_per_m > 0.0 && std::abs(missing) < 0.25 * point;
+  const bool accounted =
+      last.outflow_kg_per_m + last.inflow_kg_per_m > 0.0 && std::abs(missing) < 0.25 * point;
   return accounted ? 0 : initial_points - present;
 }
 
@@ -207,9 +211,11 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   s["density_max"] = last.density_max;
   s["points_separated"] = last.points_separated;
   put("mass_kg_per_m", last.mass_kg_per_m);
-  s["mass_error"] =
-      (last.mass_kg_per_m + last.outflow_kg_per_m) / record.initial_mass_kg_per_m - 1.0;
+  s["mass_error"] = (last.mass_kg_per_m + last.outflow_kg_per_m) /
+                        (record.initial_mass_kg_per_m + last.inflow_kg_per_m) -
+                    1.0;
   put("outflow_kg_per_m", last.outflow_kg_per_m);
+  if (!simulation.scene().inflows.empty()) put("inflow_kg_per_m", last.inflow_kg_per_m);
   put("kinetic_J_per_m", last.kinetic_J_per_m);
   put("peak_kinetic_J_per_m", record.peak_kinetic_J_per_m);
   put("potential_drop_J_per_m", record.initial_potential_J_per_m - last.potential_J_per_m);

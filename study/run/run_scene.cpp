@@ -87,6 +87,10 @@ class Run {
   void start();
   void resume();
   void write_due();
+  void write_probes();
+  /// `open(file, columns)` for the table of every probe and tracer.
+  template <class Open>
+  void open_probes(Open&& open);
   void write_frame();
   void write_profile() const;
   bool write_picture();
@@ -107,6 +111,7 @@ class Run {
   io::ResultFolder folder_;
   io::FolderClaim claim_;
   std::optional<io::RowWriter> series_;
+  std::vector<io::RowWriter> probes_, tracers_;
   std::optional<io::FrameWriter> frames_;
   mpm::FrameFields frame_fields_;  ///< a run that fails writes a frame whatever it was asked for
   std::optional<io::FrameWriter> grid_frames_;
@@ -132,6 +137,52 @@ io::ExitCode Run::go() {
   return advance();
 }
 
+template <class Open>
+void Run::open_probes(Open&& open) {
+  const bool space = scene_.dimensions() == 3;
+  const auto columns = [&](std::vector<std::string> first) {
+    std::vector<std::string> all{"time_s"};
+    all.insert(all.end(), first.begin(), first.end());
+    all.insert(all.end(), {"vx_m_per_s", "vy_m_per_s"});
+    if (space) all.emplace_back("vz_m_per_s");
+    all.insert(all.end(), {"speed_m_per_s", "pressure_Pa", "q_Pa", "density_kg_per_m3"});
+    return all;
+  };
+  for (const mpm::Probe& probe : scene_.probes)
+    probes_.push_back(
+        open(folder_.file(fmt::format("probe_{}.csv", probe.name)), columns({"depth_m"})));
+  std::vector<std::string> place{"x_m", "y_m"};
+  if (space) place.emplace_back("z_m");
+  for (const mpm::Probe& tracer : scene_.tracers)
+    tracers_.push_back(
+        open(folder_.file(fmt::format("tracer_{}.csv", tracer.name)), columns(place)));
+}
+
+/// A row for every probe and tracer; what is not there has empty cells.
+void Run::write_probes() {
+  const std::size_t axes = scene_.dimensions();
+  const auto write = [&](io::RowWriter& table, const mpm::Simulation::Sight& sight, bool place) {
+    std::string row = fmt::format("{}", simulation_.time());
+    const auto add = [&](double x, bool there) {
+      row += there ? fmt::format(",{}", x) : std::string(",");
+    };
+    const bool there = sight.mass > 0.0;
+    if (place)
+      for (std::size_t i = 0; i < axes; ++i) add(sight.position[i], there);
+    else
+      add(sight.depth, true);
+    for (std::size_t i = 0; i < axes; ++i) add(sight.velocity[i], there);
+    add(std::hypot(sight.velocity[0], sight.velocity[1], sight.velocity[2]), there);
+    add(sight.pressure, there);
+    add(sight.q, there);
+    add(sight.density, there);
+    table.rows(row + "\n");
+  };
+  for (std::size_t k = 0; k < probes_.size(); ++k)
+    write(probes_[k], simulation_.look_at(scene_.probes[k].place), false);
+  for (std::size_t k = 0; k < tracers_.size(); ++k) write(tracers_[k], simulation_.tracer(k), true);
+}
+
 void Run::start() {
   mpm::require_end_in_reach(scene_, simulation_.next_dt());
   if (fs::exists(folder_.checkpoint()))
@@ -141,6 +192,9 @@ void Run::start() {
   folder_.write_file("input.toml", request_.input);
   series_.emplace(
       io::RowWriter::create(folder_.file("series.csv"), series_columns(scene_.dimensions())));
+  open_probes([](fs::path file, std::vector<std::string> columns) {
+    return io::RowWriter::create(std::move(file), std::move(columns));
+  });
   if (scene_.frame_interval > 0.0) frames_.emplace(folder_.frames(), scene_.name);
   if (frames_ && scene_.grid_frames)
     grid_frames_.emplace(folder_.frames(), io::grid_series_name(scene_.name));
@@ -162,6 +216,9 @@ void Run::resume() {
   const double time = simulation_.time();
   series_.emplace(io::RowWriter::continued(folder_.file("series.csv"),
                                            series_columns(scene_.dimensions()), time));
+  open_probes([&](fs::path file, std::vector<std::string> columns) {
+    return io::RowWriter::continued(std::move(file), std::move(columns), time);
+  });
   if (scene_.frame_interval > 0.0)
     frames_ = io::FrameWriter::continued(folder_.frames(), scene_.name, time);
   if (frames_ && scene_.grid_frames)
@@ -261,6 +318,7 @@ void Run::write_due() {
         throw mpm::NumericalFailure(fmt::format(
             "step {} at t = {:.6g} s: a figure of the series is not finite", row.step, time));
     series_->row(series_values(row, scene_.dimensions()));
+    write_probes();
   }
   if (frames_ && schedule_.frame_due(time)) write_frame();
 }

@@ -233,7 +233,7 @@ TEST_F(CommandTest, ARunLeavesACompleteResult) {
             "density_max,points_separated,transfer_loss_J_per_m,wall_loss_J_per_m,"
             "energy_residual_J_per_m,outflow_kg_per_m,angular_momentum,front_99_m,"
             "plastic_J_per_m,viscous_J_per_m,hypoelastic_J_per_m,separation_J_per_m,"
-            "averaging_loss_J_per_m,density_floor_J_per_m,work_residual_J_per_m");
+            "averaging_loss_J_per_m,density_floor_J_per_m,work_residual_J_per_m,inflow_kg_per_m");
   EXPECT_EQ(series[1].substr(0, 4), "0,0,");
   EXPECT_EQ(series[101].substr(0, 9), "0.1,5000,");
   EXPECT_EQ(lines_of(content_of(folder / "profile.csv")).at(0), "x_m,depth_m");

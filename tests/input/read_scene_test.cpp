@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "input/resolved_scene.hpp"
 #include "io/atomic_file.hpp"
 
 namespace repose::input {
@@ -110,6 +111,75 @@ TEST(ReadScene, walls_apply_to_three_edges_unless_one_is_named) {
   EXPECT_EQ(scene.left.kind, mpm::Wall::Kind::friction);
   EXPECT_EQ(scene.top.friction, 0.4);
   EXPECT_EQ(scene.right.kind, mpm::Wall::Kind::open);
+}
+
+TEST(ReadScene, an_edge_in_parts) {
+  const std::string parts =
+      "floor = [{ from = 0.2, to = 0.5, kind = \"open\" }, { to = 0.3, friction = 0.4 }, "
+      "{ speed = 0.1 }]\n[[body]]";
+  const SceneFile file = scene_of(replaced(granular, "[[body]]", parts));
+  const mpm::Wall& floor = file.scene.floor;
+  ASSERT_EQ(floor.kind, mpm::Wall::Kind::parts);
+  ASSERT_EQ(floor.parts.size(), 3U);
+  EXPECT_EQ(floor.parts[0].kind, mpm::Wall::Kind::open);
+  EXPECT_EQ(floor.parts[0].from[0], 0.2);
+  EXPECT_EQ(floor.parts[0].to[0], 0.5);
+  EXPECT_EQ(floor.parts[1].kind, mpm::Wall::Kind::friction);
+  EXPECT_EQ(floor.parts[1].friction, 0.4);
+  EXPECT_EQ(floor.parts[1].from[0], -HUGE_VAL);
+  EXPECT_EQ(floor.parts[2].kind, mpm::Wall::Kind::no_slip);
+  EXPECT_EQ(floor.parts[2].speed, 0.1);
+  // what is written of it reads as the same
+  const std::string written = resolved_input(file, "test");
+  EXPECT_EQ(resolved_input(scene_of(written), "test"), written);
+  const auto problem = [&](const std::string& list) {
+    return problems(replaced(granular, "[[body]]", "floor = " + list + "\n[[body]]"));
+  };
+  EXPECT_NE(problem("[{ kind = \"opne\" }]").find("domain.floor[0].kind must be one of"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"periodic\" }]").find("domain.floor[0].kind must be one of"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ to = 1.0 }]").find("domain.floor[0] needs one of kind"), std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", friction = 0.3 }]").find("needs one of kind"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", form = 1.0 }]").find("form"), std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", from = \"a\" }]").find("domain.floor[0].from"),
+            std::string::npos);
+  EXPECT_NE(problem("[{ kind = \"slip\", to = 0.3 }]").find("no part of the edge holds in"),
+            std::string::npos);
+  EXPECT_NE(problem("[]").find("domain.floor"), std::string::npos);
+}
+
+TEST(ReadScene, inflows_probes_and_tracers) {
+  const std::string text =
+      replaced(granular, "[grid]",
+               "[[inflow]]\nedge = \"top\"\nfrom = 0.1\nto = 0.2\nrate = 3.0\nstops = 0.5\n"
+               "[[probe]]\nname = \"gauge\"\nplace = [0.1, 0.1]\n[[tracer]]\nplace = [0.1, 0.2]\n"
+               "[grid]");
+  const SceneFile file = scene_of(text);
+  ASSERT_EQ(file.scene.inflows.size(), 1U);
+  const mpm::Inflow& inflow = file.scene.inflows[0];
+  EXPECT_EQ(mpm::edge_names[inflow.edge], "top");
+  EXPECT_EQ(inflow.from[0], 0.1);
+  EXPECT_EQ(inflow.rate, 3.0);
+  EXPECT_FALSE(inflow.speed);
+  EXPECT_EQ(inflow.stops, 0.5);
+  ASSERT_EQ(file.scene.probes.size(), 1U);
+  EXPECT_EQ(file.scene.probes[0].name, "gauge");
+  EXPECT_EQ(file.scene.tracers.at(0).name, "0");
+  EXPECT_EQ(file.scene.tracers[0].place[1], 0.2);
+  const std::string written = resolved_input(file, "test");
+  EXPECT_EQ(resolved_input(scene_of(written), "test"), written);
+  const auto problem = [&](const char* old, const char* fresh) {
+    return problems(replaced(text, old, fresh));
+  };
+  EXPECT_NE(problem("stops = 0.5", "body = \"snad\"").find("is no body: there is \""),
+            std::string::npos);
+  EXPECT_NE(problem("edge = \"top\"", "").find("inflow"), std::string::npos);
+  EXPECT_NE(problem("rate = 3.0", "rate = -3.0").find("inflow[0].rate"), std::string::npos);
+  EXPECT_NE(problem("rate = 3.0", "rate = 3.0\nspeed = 1.0").find("give either speed or rate"),
+            std::string::npos);
+  EXPECT_NE(problem("\"gauge\"", "\"a/b\"").find("becomes part of a file name"), std::string::npos);
 }
 
 TEST(ReadScene, a_periodic_box_with_a_moving_lid) {

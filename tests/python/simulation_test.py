@@ -65,6 +65,7 @@ class Stepping(unittest.TestCase):
         sim.step(steps=20)
         sim.gravity = 4.0
         sim.set_wall("right", {"friction": 0.3})
+        sim.set_wall("floor", [{"from": 0.15, "to": 0.4, "kind": "open"}, {"kind": "no_slip"}])
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "state.h5")
             sim.save(file)
