@@ -1,11 +1,13 @@
 """The tables of docs/surfaces.md and of the channels in data/benchmarks/plane_collapse_2 and _5.
 
-    PYTHONPATH=build/release/python python3 python/tools/surfaces.py hourglass | drum | channel
+    PYTHONPATH=build/release/python python3 python/tools/surfaces.py hourglass | drum | channel | door
 
 One thread; the finer cells of the hourglass take ten minutes, everything else together five.
 """
 
+import pathlib
 import sys
+import tomllib
 
 import numpy as np
 
@@ -59,6 +61,32 @@ def channel() -> None:
                   f"run-out {(now['front_99_m'] - 0.1) / 0.1:.2f}, H/L_0 {now['height_m'] / 0.1:.2f}", flush=True)
 
 
+def door() -> None:
+    """The column of `gate`, without the rock, behind a door that is lifted: in the plane and in space."""
+    for speed in (1.0, 2.0, None):
+        for depth in (None, 0.0625):
+            scene = tomllib.loads(pathlib.Path("data/scenes/gate.toml").read_text())
+            del scene["surface"][1]
+            scene["surface"][0]["velocity"] = [0.0, speed or 0.0]
+            if speed is None:
+                del scene["surface"]
+            if depth is not None:
+                scene["domain"]["size"].append(depth)
+                scene["body"][0]["size"].append(depth)
+                for gate in scene.get("surface", []):
+                    gate["velocity"].append(0.0)
+            sim = repose.Simulation(scene, threads=1)
+            mass = sim.diagnostics()["mass_kg_per_m" if depth is None else "mass_kg"]
+            fronts = []
+            for time in (0.1, 0.2, 0.3, 0.4, 0.6):
+                sim.step(until=time)
+                fronts.append(sim.diagnostics()["front_99_m"])
+            now = sim.diagnostics()
+            lost = now["mass_kg_per_m" if depth is None else "mass_kg"] / mass - 1.0
+            print(f"door {'gone at once' if speed is None else f'at {speed} m/s'}, {'plane' if depth is None else 'space'}: "
+                  f"x of 99 % of the mass {' '.join(f'{x:.4f}' for x in fronts)} m, mass {lost:.1e}", flush=True)
+
+
 if __name__ == "__main__":
     for name in sys.argv[1:]:
-        {"hourglass": hourglass, "drum": drum, "channel": channel}[name]()
+        {"hourglass": hourglass, "drum": drum, "channel": channel, "door": door}[name]()
