@@ -60,6 +60,15 @@ void set_polygon(Body& body, const Polygon& polygon) {
   }
 }
 
+bool seeks_equilibrium(const Scene& scene) {
+  if (scene.equilibrium) return *scene.equilibrium;
+  const auto& bodies = scene.bodies;
+  return scene.tilt_deg == 0.0 &&
+         (bodies.size() > 1 || std::any_of(bodies.begin(), bodies.end(),
+                                           [](const Body& b) { return b.polygon.has_value(); })) &&
+         std::all_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.lithostatic; });
+}
+
 bool raise_top_to_cells(Scene& scene) {
   if (is_whole_multiple(scene.domain[1], scene.h)) return false;
   // 12 digits: 0.575, not 0.5750000000000001

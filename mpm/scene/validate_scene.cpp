@@ -259,7 +259,7 @@ void check_discs(const Scene& scene) {
                                                  number(point_spacing(scene)) + " m apart");
     if (body.lithostatic && scene.dimensions() == 2)
       throw InputError(path_of(i, "initial.lithostatic"),
-                       "a disc has no level surface: only a box can be lithostatic");
+                       "a disc has no level surface: only a box or a polygon can be lithostatic");
     if (scene.dimensions() == 2) continue;
     const auto cuts = [&](std::size_t axis, double centre, const Wall& wall, const char* key) {
       if (body.size[axis] < 2.0 * disc.radius * (1.0 - lattice_tolerance) &&
@@ -373,9 +373,6 @@ void check_polygons(const Scene& scene) {
     check_polygon(*body.polygon, path_of(i, "corners"));
     if (scene.dimensions() == 3)
       throw InputError(path_of(i, "corners"), "a polygon is a body of the plane");
-    if (body.lithostatic)
-      throw InputError(path_of(i, "initial.lithostatic"),
-                       "only a box can be lithostatic: a polygon has no level surface");
   }
 }
 

@@ -70,6 +70,7 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     throw InputError("domain.size", "a prescribed motion is for plane strain only");
   }
   sort_if_needed();
+  seek_equilibrium();
   signals = initial_signals();
   first_dt = scene.dt ? *scene.dt : stable_step(signals, scene.courant, grid.h());
   last_dt = first_dt;

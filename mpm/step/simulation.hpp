@@ -159,7 +159,9 @@ class Simulation {
     /// all steps
     std::int64_t points_held, most_points_held, point_steps_held;
     std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
-    double memory_MB;                               ///< of points and grid
+    /// What of the weight is out of balance at the start (step/equilibrium.hpp); 0: not sought
+    double out_of_balance;
+    double memory_MB;  ///< of points and grid
     int threads;
   };
   Counters counters() const;

@@ -10,6 +10,7 @@
 #include "mpm/boundary/rigid_contact.hpp"
 #include "mpm/boundary/walls.hpp"
 #include "mpm/grid/grid.hpp"
+#include "mpm/step/equilibrium.hpp"
 #include "mpm/step/implicit_viscosity.hpp"
 #include "mpm/step/ledger.hpp"
 #include "mpm/step/simulation.hpp"
@@ -46,6 +47,9 @@ class Simulation::Impl {
   void extend_velocity();            ///< XPIC, FMPM beyond first order (extended_pic.cpp)
   void grid_to_points(double dt);    ///< G2P, move, update stress, P2G of the next step
   void close_ledger();               ///< kinetic energies before and after; throws NumericalFailure
+
+  /// Corrects the stresses of a start at rest (equilibrium.hpp), if the scene asks for it.
+  void seek_equilibrium();
 
   SeriesRow diagnostics();
   Deposit deposit() const;
@@ -108,6 +112,7 @@ class Simulation::Impl {
   Signals signals;          ///< of the points
   double node_share = 1.0;  ///< largest signal of a node over that of a point (step_size.hpp)
   Ledger ledger;
+  Equilibrium equilibrium;
   double highest_energy = 0.0;  ///< what kinetic energy can never exceed [J/m]
   double initial_height = 0.0;  ///< H_0: top of the highest body [m]
 

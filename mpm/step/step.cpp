@@ -149,6 +149,7 @@ void Simulation::Impl<dim>::measure_signals() {
   template void Simulation::Impl<DIM>::step(double);                \
   template void Simulation::Impl<DIM>::sort_if_needed();            \
   template double Simulation::Impl<DIM>::choose_step(double) const; \
+  template void Simulation::Impl<DIM>::update_grid(double);         \
   template Retention Simulation::Impl<DIM>::retention(double) const;
 REPOSE_STEP(2)
 REPOSE_STEP(3)
