@@ -52,6 +52,9 @@ void general_keys(Keys& keys, mpm::Scene& scene) {
              "default where all bodies are lithostatic and there are several, or a polygon"},
             starts, start);
   if (start) scene.equilibrium = *start == 1;
+  keys.text({"start_from", "-",
+             "result folder of a run with output.final_state = true, whose points the bodies are"},
+            scene.start_from);
   keys.number({"water_table", "m", "height below which bodies are buoyant"}, scene.water_table);
   keys.number(
       Key{"water_density", "kg/m³", "of the water below the water table", positive}.only_if(
@@ -334,6 +337,8 @@ void output_keys(Keys& keys, SceneFile& file) {
        "for none",
        not_negative},
       file.checkpoint_interval);
+  keys.boolean({"final_state", "-", "final_state.h5, which another scene can start_from"},
+               file.final_state);
   keys.boolean({"shear_strain", "-", "of every point since the start, in frames"},
                file.scene.shear_strain);
   keys.choice(
@@ -397,6 +402,10 @@ SceneFile read_scene(InputFile& file) {
       file.report(error);
     }
   }
+  if (!scene.start_from.empty())
+    result.notes.push_back(fmt::format("scene.start_from: bodies start as {} has left them, whatever "
+                                       "shape, velocity and initial state is given here",
+                                       scene.start_from));
   for (const mpm::Body& body : scene.bodies)
     if (body.law.name == umat::law_name && scene.pressure_averaging > 0.0)
       file.report("step.pressure_averaging",

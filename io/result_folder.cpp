@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 65> outputs{"manifest.json",
+constexpr std::array<std::string_view, 66> outputs{"manifest.json",
                                                    "summary.json",
                                                    "checkpoint_previous.h5",
                                                    "sweep.csv",
@@ -39,6 +39,7 @@ constexpr std::array<std::string_view, 65> outputs{"manifest.json",
                                                    "curves.csv",
                                                    "finished.jsonl",
                                                    "checkpoint.h5",
+                                                   "final_state.h5",
                                                    "series.csv",
                                                    "profile.csv",
                                                    "curve.csv",

@@ -263,7 +263,7 @@ double buoyant_share(const Scene& scene, const Material& material) {
 }
 
 template <int dim>
-PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) {
+PointsOf<dim> without_points(const Body& body, const Scene& scene) {
   using F = Layout<dim>;
   PointsOf<dim> points;
   points.material =
@@ -287,7 +287,12 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   }
 
   points.single = scene.storage == Storage::single_precision;
+  return points;
+}
 
+template <int dim>
+PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) {
+  PointsOf<dim> points = without_points<dim>(body, scene);
   std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
   std::array<double, 3> origin = body.origin, spacing{};
   for (std::size_t i = 0; i < dim; ++i) spacing[i] = body.size[i] / static_cast<double>(lattice[i]);
@@ -358,13 +363,15 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
                                   : "origin",
                      "all of the body lies within rigid surfaces: it has no points");
   // solid depths are measured at the loosest density the law knows by name, else as filled
-  points.rho_0 = points[F::rho][points.count - 1];
+  points.rho_0 = points[Layout<dim>::rho][points.count - 1];
   for (std::size_t k = 0; k < points.material->law().parameters.size(); ++k)
     if (points.material->law().parameters[k].name == "rho_0")
       points.rho_0 = points.material->theta()[k];
   return points;
 }
 
+template PointsOf<2> without_points<2>(const Body&, const Scene&);
+template PointsOf<3> without_points<3>(const Body&, const Scene&);
 template PointsOf<2> fill<2>(const Body&, const Scene&, std::int64_t);
 template PointsOf<3> fill<3>(const Body&, const Scene&, std::int64_t);
 

@@ -16,6 +16,10 @@ namespace repose::mpm {
 template <int dim>
 PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id);
 
+/// A body's points before there are any: its law, and the fields that its points have.
+template <int dim>
+PointsOf<dim> without_points(const Body& body, const Scene& scene);
+
 /// Vertical stress at depth z below a free surface under gravity g for a density that depends on
 /// pressure, dσ_v/dz = ρ(p) g with p = σ_v(1 + 2K0)/3 [Pa]. `steps` classical Runge–Kutta steps.
 /// `above`: σ_v at z = 0, what rests on the surface [Pa].

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "mpm/scene/fill.hpp"
 #include "mpm/scene/scene.hpp"
 
 namespace repose::mpm {
@@ -443,6 +444,37 @@ void check_space(const Scene& scene) {
   }
 }
 
+void check_start(const Scene& scene) {
+  require(scene.gravity_ramp, not_negative, "scene.gravity_ramp", "gravity_ramp");
+  require(scene.water_density, positive, "scene.water_density", "water_density");
+  if (scene.bodies.empty()) throw InputError("body", "a scene needs at least one [[body]]");
+  if (scene.water_table) {
+    require(*scene.water_table, {}, "scene.water_table", "water_table");
+    if (scene.tilt_deg != 0.0)
+      throw InputError("scene.water_table", "a water table is level: it does not go with tilt_deg");
+  }
+  if (!scene.start_from.empty()) {
+    if (scene.equilibrium.value_or(false))
+      throw InputError("scene.start",
+                       "\"at_rest\" is for bodies that are lithostatic, not for what another run "
+                       "has left (start_from)");
+    return;
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!scene.bodies[i].lithostatic) continue;
+    if (scene.gravity_ramp > 0.0)
+      throw InputError(path_of(i, "initial.lithostatic"),
+                       "a lithostatic body bears its whole weight from the start, which "
+                       "scene.gravity_ramp gives it little by little: leave out one of the two");
+  }
+  if (scene.equilibrium.value_or(false) &&
+      std::none_of(scene.bodies.begin(), scene.bodies.end(),
+                   [](const Body& body) { return body.lithostatic; }))
+    throw InputError("scene.start",
+                     "\"at_rest\" corrects the stresses of bodies with initial = { lithostatic = "
+                     "true }, and there is none");
+}
+
 /// What the material says to the state at the base of a lithostatic body.
 InitialPoint lithostatic_base(const Scene& scene, const Body& body, const Material& material) {
   const InitialConditions& given = body.initial;
@@ -476,6 +508,12 @@ void check_law(const Scene& scene, std::size_t i) {
                      "contacts damp the elastic waves of a law that has them and a grain diameter "
                      "d: mu_i (form = \"elastoviscoplastic\") or critical_state_mu_i");
   try {
+    buoyant_share(scene, *material);
+  } catch (const InputError& error) {
+    throw InputError(path_of(i, error.key().c_str()), error.what());
+  }
+  if (!scene.start_from.empty()) return;
+  try {
     const InitialPoint start = body.lithostatic ? lithostatic_base(scene, body, *material)
                                                 : material->initial(body.initial);
     if (!(start.density > 0.0) || !std::isfinite(start.density))
@@ -494,11 +532,14 @@ void validate(const Scene& scene) {
   check_numbers(scene);
   check_cells(scene);
   check_periodic(scene);
-  check_geometry(scene);
-  check_discs(scene);
-  check_polygons(scene);
+  if (scene.start_from.empty()) {
+    check_geometry(scene);
+    check_discs(scene);
+    check_polygons(scene);
+    check_overlap(scene);
+  }
   check_surfaces(scene);
-  check_overlap(scene);
+  check_start(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
   check_space(scene);
   check_extension(scene);

@@ -131,6 +131,7 @@ class EquilibriumSearch {
     std::vector<double>& most = most_used_.emplace_back(points.slots(), 1.0);
     const Strength strength(*points.material);
     fluid_.push_back(!points.material->law().has_stress_memory);
+    root_.emplace_back(fluid_.back(), s_.scene.bodies[b].initial.K0.value_or(1.0));
     for (std::size_t s = 0; s < points.slots(); ++s) {
       Sym<double, 6>& at = stress[s];
       for (std::size_t k = 0; k < At::components; ++k) at.c[k] = points[At::stress + k][s];
@@ -195,23 +196,34 @@ class EquilibriumSearch {
     return norm(z) / (s_.scene.gravity * std::sqrt(mass));
   }
 
-  /// A fluid bears a pressure only.
-  void keep_pressure(std::size_t b, PointValues& y) const {
-    if (!fluid_[b]) return;
-    for (std::size_t s = 0; s < y[b][0].size(); ++s) {
-      double mean = 0.0;
-      for (std::size_t k = 0; k < dim; ++k) mean += y[b][k][s] / dim;
-      for (std::size_t k = 0; k < stresses; ++k) y[b][k][s] = k < dim ? mean : 0.0;
+  /// The root of an isotropic stiffness, y_ii → c (α y_ii + β Σ y_jj), y_ij → c α y_ij/√2.
+  struct Root {
+    double alpha = 1.0, beta = 0.0, nu = 0.0;
+    /// A fluid bears a pressure only. Else ν = K0/(1 + K0), up to 0.45: a column that is compressed
+    /// keeps its K0.
+    Root(bool fluid, double K0) {
+      if (fluid) {
+        alpha = 0.0;
+        beta = 1.0 / dim;
+        return;
+      }
+      nu = std::min(K0 / (1.0 + K0), 0.45);
+      beta = (std::sqrt(1.0 + dim * nu / (1.0 - 2.0 * nu)) - 1.0) / dim;
     }
+  };
+  double rooted(std::size_t b, std::size_t k, std::size_t s, const PointValues& y) const {
+    const Root& root = root_[b];
+    if (k >= dim) return scale_[b][s] * root.alpha * std::sqrt(0.5) * y[b][k][s];
+    double sum = 0.0;
+    for (std::size_t i = 0; i < dim; ++i) sum += y[b][i][s];
+    return scale_[b][s] * (root.alpha * y[b][k][s] + root.beta * sum);
   }
-  static double share(std::size_t k) { return k < dim ? 1.0 : std::sqrt(0.5); }  // of |Δσ|²
 
   NodeValues product(const PointValues& y) {
     s_.gravity = {};
     s_.scene.water_table.reset();
-    put_stress([&](std::size_t b, std::size_t k, std::size_t s) {
-      return scale_[b][s] * share(k) * y[b][k][s];
-    });
+    put_stress(
+        [&](std::size_t b, std::size_t k, std::size_t s) { return rooted(b, k, s, y); });
     return weighted_velocities();
   }
 
@@ -234,7 +246,7 @@ class EquilibriumSearch {
       choose<dim>(s_.scene, true, false,
                   [&]<class Kernel>(Kernel, auto, auto) { strain_block<Kernel>(k); });
     });
-    PointValues y = zeros();
+    PointValues y = zeros(), of_strain = zeros();
     for (std::size_t b = 0; b < y.size(); ++b) {
       PointsOf<dim>& points = s_.bodies[b];
       for (std::size_t s = 0; s < points.slots(); ++s) {
@@ -244,10 +256,10 @@ class EquilibriumSearch {
           const double of = i == j
                                 ? points[At::L + dim * i + i][s]
                                 : points[At::L + dim * i + j][s] + points[At::L + dim * j + i][s];
-          y[b][k][s] = -scale_[b][s] * share(k) * V * of;
+          of_strain[b][k][s] = -V * of;
         });
+        for (std::size_t k = 0; k < stresses; ++k) y[b][k][s] = rooted(b, k, s, of_strain);
       }
-      keep_pressure(b, y);
       for (std::size_t k = 0; k < At::gradient; ++k)  // it may be the field that goes to the grid
         std::fill_n(points.data(At::L + k), points.slots(), 0.0);
     }
@@ -352,9 +364,13 @@ class EquilibriumSearch {
       if (std::abs(phi * alpha * c) < 1e-12 * first) break;
     }
     for (std::size_t body = 0; body < y.size(); ++body)
-      for (std::size_t slot = 0; slot < s_.bodies[body].slots(); ++slot)
+      for (std::size_t slot = 0; slot < s_.bodies[body].slots(); ++slot) {
+        Sym<double, 6>& stress = stress_[body][slot];
         for (std::size_t k = 0; k < stresses; ++k)
-          stress_[body][slot][component(k)] += scale_[body][slot] * share(k) * y[body][k][slot];
+          stress[component(k)] += rooted(body, k, slot, y);
+        if constexpr (dim == 2)  // plane strain
+          stress[2] += root_[body].nu * (rooted(body, 0, slot, y) + rooted(body, 1, slot, y));
+      }
   }
 
   /// Brings all points to what their law admits, and gives them its density and state. Returns how
@@ -487,13 +503,14 @@ class EquilibriumSearch {
   std::vector<std::vector<double>> scale_;  ///< c/√V; 0: not to be changed
   std::vector<std::vector<double>> least_pressure_, most_used_;
   std::vector<bool> fluid_;
+  std::vector<Root> root_;
 };
 
 }  // namespace
 
 template <int dim>
 void Simulation::Impl<dim>::seek_equilibrium() {
-  if (!seeks_equilibrium(scene) || prescribed.acceleration || prescribed.start) return;
+  if (!seeks_equilibrium(scene) || !scene.start_from.empty() || prescribed.acceleration || prescribed.start) return;
   equilibrium = EquilibriumSearch<dim, Impl>(*this).run();
 }
 

@@ -7,9 +7,11 @@
 /// (transfer.hpp), M the nodes' masses, and T what surfaces and edges leave of a velocity
 /// (rigid_contact.hpp, walls.hpp; those with friction stick). From a first guess σ_0, the weight of
 /// what stands over a place (fill.hpp), the least correction is sought that brings a to zero:
-///     min Σ V |Δσ|²/c²   with   ‖T M⁻¹(G(σ_0 + Δσ) + Mg)‖_M least,   c ∝ σ_v,
-/// least squares by the method of Paige & Saunders (LSQR, 1982) in y = √V Δσ/c from y = 0, where
-/// the residual is the acceleration weighted by mass. Its products are transfers of the step:
+///     min Σ V Δσ:C⁻¹:Δσ   with   ‖T M⁻¹(G(σ_0 + Δσ) + Mg)‖_M least,
+/// C that of an isotropic elasticity, as stiff as σ_v², with the Poisson number that gives K0 in a
+/// column (C ∝ σ_v² makes the correction small against the stress): least squares by the method of
+/// Paige & Saunders (LSQR, 1982) in y = √V C^{-1/2}Δσ from y = 0, where the residual is the
+/// acceleration weighted by mass. Its products are transfers of the step:
 /// points to grid for G, and the strain of a field on the grid for its transposed.
 ///
 /// What a law does not bear is brought back and a little further, a pressure that would be tension

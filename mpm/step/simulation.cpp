@@ -43,8 +43,14 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       prescribed(by_program) {
+  if (!scene.start_from.empty()) {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      body_names.push_back(scene.bodies[b].name.empty() ? fmt::format("body[{}]", b)
+                                                        : scene.bodies[b].name);
+    start_from(scene.start_from);
+  }
   std::int64_t next_id = 0;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+  for (std::size_t b = 0; scene.start_from.empty() && b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     try {
       bodies.push_back(fill<dim>(body, scene, next_id));
@@ -55,6 +61,8 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     body_names.push_back(body.name.empty() ? fmt::format("body[{}]", b) : body.name);
     initial_height = std::max(initial_height, body.origin[1] + body.size[1]);
   }
+  for (const PointsOf<dim>& points : bodies)
+    buoyant_.push_back(buoyant_share(scene, *points.material));
   for (PointsOf<dim>& points : bodies)
     if (prescribed.material) points.material = prescribed.material;
   if constexpr (dim == 2) {
@@ -81,6 +89,7 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
   ledger.kinetic = e.kinetic;
   ledger.power = initial_power();
   highest_energy = energy_bound();
+  if (scene.gravity_ramp > 0.0) change_gravity(gravity_now());
 }
 
 template <int dim>

@@ -141,7 +141,8 @@ class Simulation {
 
   /// Goes on under another gravity, as Scene::gravity and tilt_deg [m/s²], [°]. The potential
   /// energy that this gives to the points counts as there from the start, so that the ledger still
-  /// closes; a relaxation time that followed from gravity stays what it was. Throws InputError.
+  /// closes; a relaxation time that followed from gravity stays what it was, and a ramp has ended.
+  /// Throws InputError.
   void set_gravity(double gravity, double tilt_deg);
   /// Goes on with another edge: "floor", "left", "right", "top", in space "near" and "far". Edges
   /// do not become periodic or cease to be. Throws InputError, with the edges there are.
@@ -169,6 +170,8 @@ class Simulation {
   /// Whole state to one HDF5 file and back; a resumed run gives the same bits as one never stopped.
   void save(const std::filesystem::path& file) const;
   void load(const std::filesystem::path& file);
+  /// What Scene::start_from takes the points from, as final_state.h5 in a folder.
+  void save_final_state(const std::filesystem::path& file) const;
 
  private:
   friend class MidCollapse;  ///< bench/: starts from points that another resolution has moved

@@ -30,6 +30,7 @@ void Simulation::Impl<dim>::step(double stop_at) {
   time = tiles_time;
   ++steps;
   close_ledger();
+  follow_ramp();
 }
 
 template <int dim>

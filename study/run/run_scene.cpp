@@ -330,6 +330,7 @@ io::ExitCode Run::finish() {
   if (lost != 0) return stop_at_failure(fmt::format("{} points have been lost", lost));
   tell_warnings();
   write_profile();
+  if (request_.file.final_state) simulation_.save_final_state(folder_.file("final_state.h5"));
   const bool drawn = write_picture();
   write_summary("done", "");
   folder_.seal();
