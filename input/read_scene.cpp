@@ -403,9 +403,10 @@ SceneFile read_scene(InputFile& file) {
     }
   }
   if (!scene.start_from.empty())
-    result.notes.push_back(fmt::format("scene.start_from: bodies start as {} has left them, whatever "
-                                       "shape, velocity and initial state is given here",
-                                       scene.start_from));
+    result.notes.push_back(
+        fmt::format("scene.start_from: bodies start as {} has left them, whatever "
+                    "shape, velocity and initial state is given here",
+                    scene.start_from));
   for (const mpm::Body& body : scene.bodies)
     if (body.law.name == umat::law_name && scene.pressure_averaging > 0.0)
       file.report("step.pressure_averaging",

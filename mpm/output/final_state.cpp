@@ -28,9 +28,9 @@ void Simulation::Impl<dim>::save_final_state(const std::filesystem::path& path) 
   using F = Layout<dim>;
   const hdf5::Quiet quiet;
   const hdf5::NewFile file;
-  hdf5::write(file, "wholes",
-              std::vector<std::int64_t>{format_version, dim,
-                                        static_cast<std::int64_t>(bodies.size())});
+  hdf5::write(
+      file, "wholes",
+      std::vector<std::int64_t>{format_version, dim, static_cast<std::int64_t>(bodies.size())});
   hdf5::write(file, "reals", std::vector<double>{initial_height});
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const PointsOf<dim>& points = bodies[b];
@@ -121,8 +121,8 @@ void Simulation::Impl<dim>::start_from(const std::filesystem::path& folder) {
       for (std::size_t k = 0; k < F::gradient; ++k)
         if (points.affine != F::L) take(points.affine + k, array(fmt::format("affine{}", k)));
       if (points.shear_strain != 0) {
-        const bool kept = H5Lexists(file, fmt::format("body{}_shear_strain", of).c_str(),
-                                    H5P_DEFAULT) > 0;
+        const bool kept =
+            H5Lexists(file, fmt::format("body{}_shear_strain", of).c_str(), H5P_DEFAULT) > 0;
         take(points.shear_strain,
              kept ? array("shear_strain") : std::vector<double>(points.count, 0.0));
       }
@@ -169,9 +169,9 @@ void Simulation::Impl<dim>::require_room(const PointsOf<dim>& points, std::size_
                                                   at()));
     for (std::size_t k = 0; k < scene.surfaces.size(); ++k)
       if (scene.surfaces[k].nearest_at(0.0, x).distance < 0.0)
-        throw InputError(fmt::format("surface[{}]", k),
-                         fmt::format("what the scene starts from is in its way: {} lies in it",
-                                     at()));
+        throw InputError(
+            fmt::format("surface[{}]", k),
+            fmt::format("what the scene starts from is in its way: {} lies in it", at()));
   }
 }
 

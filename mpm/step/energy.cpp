@@ -49,8 +49,8 @@ double Simulation::Impl<dim>::initial_power() const {
 }
 
 template <int dim>
-double Simulation::Impl<dim>::power_of(const PointsOf<dim>& points, std::size_t body,
-                                       std::size_t s, double dt) const {
+double Simulation::Impl<dim>::power_of(const PointsOf<dim>& points, std::size_t body, std::size_t s,
+                                       double dt) const {
   using F = Layout<dim>;
   std::array<double, F::gradient> L;
   for (std::size_t i = 0; i < L.size(); ++i) L[i] = points[F::L + i][s];
@@ -105,12 +105,12 @@ void Simulation::Impl<dim>::remove_outflow() {
   }
 }
 
-#define REPOSE_ENERGY(DIM)                                                                   \
-  template Simulation::Impl<DIM>::Energies Simulation::Impl<DIM>::energies();                \
-  template double Simulation::Impl<DIM>::potential() const;  \
-  template double Simulation::Impl<DIM>::initial_power() const;                              \
-  template double Simulation::Impl<DIM>::power_of(const PointsOf<DIM>&, std::size_t, std::size_t, double) \
-      const;                                                                                 \
+#define REPOSE_ENERGY(DIM)                                                                        \
+  template Simulation::Impl<DIM>::Energies Simulation::Impl<DIM>::energies();                     \
+  template double Simulation::Impl<DIM>::potential() const;                                       \
+  template double Simulation::Impl<DIM>::initial_power() const;                                   \
+  template double Simulation::Impl<DIM>::power_of(const PointsOf<DIM>&, std::size_t, std::size_t, \
+                                                  double) const;                                  \
   template void Simulation::Impl<DIM>::remove_outflow();
 REPOSE_ENERGY(2)
 REPOSE_ENERGY(3)

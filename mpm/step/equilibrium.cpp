@@ -222,8 +222,7 @@ class EquilibriumSearch {
   NodeValues product(const PointValues& y) {
     s_.gravity = {};
     s_.scene.water_table.reset();
-    put_stress(
-        [&](std::size_t b, std::size_t k, std::size_t s) { return rooted(b, k, s, y); });
+    put_stress([&](std::size_t b, std::size_t k, std::size_t s) { return rooted(b, k, s, y); });
     return weighted_velocities();
   }
 
@@ -366,8 +365,7 @@ class EquilibriumSearch {
     for (std::size_t body = 0; body < y.size(); ++body)
       for (std::size_t slot = 0; slot < s_.bodies[body].slots(); ++slot) {
         Sym<double, 6>& stress = stress_[body][slot];
-        for (std::size_t k = 0; k < stresses; ++k)
-          stress[component(k)] += rooted(body, k, slot, y);
+        for (std::size_t k = 0; k < stresses; ++k) stress[component(k)] += rooted(body, k, slot, y);
         if constexpr (dim == 2)  // plane strain
           stress[2] += root_[body].nu * (rooted(body, 0, slot, y) + rooted(body, 1, slot, y));
       }
@@ -510,7 +508,9 @@ class EquilibriumSearch {
 
 template <int dim>
 void Simulation::Impl<dim>::seek_equilibrium() {
-  if (!seeks_equilibrium(scene) || !scene.start_from.empty() || prescribed.acceleration || prescribed.start) return;
+  if (!seeks_equilibrium(scene) || !scene.start_from.empty() || prescribed.acceleration ||
+      prescribed.start)
+    return;
   equilibrium = EquilibriumSearch<dim, Impl>(*this).run();
 }
 

@@ -331,8 +331,8 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, std::size_t body
     for (std::size_t i = 0; i < stress.size(); ++i) stress[i] = at(fields[i]);
     power = power + m * (dot(g, moving) - stress_power(L, stress, step, follows_rate) * inv_rho);
     if (scene.water_table) {
-      const Pack borne = select(at(F::x + 1) < Pack(*scene.water_table), Pack(buoyant_[body]),
-                                Pack(0.0));
+      const Pack borne =
+          select(at(F::x + 1) < Pack(*scene.water_table), Pack(buoyant_[body]), Pack(0.0));
       power = power - m * borne * g[1] * moving[1];
     }
     const Pack v2 = dot(moving, moving);

@@ -25,8 +25,7 @@ void Simulation::Impl<dim>::transfer_to_tile(std::size_t block) {
       if constexpr (extra == Extra::signal) square_signals(points, range, values.data());
       points_to_tile<Kernel, affine, has_extra>(points, range, grid.h(), tile_origin(pb),
                                                 values.data(), tile);
-      if (scene.water_table)
-        buoyancy_to_tile<Kernel>(points, b, range, tile_origin(pb), tile);
+      if (scene.water_table) buoyancy_to_tile<Kernel>(points, b, range, tile_origin(pb), tile);
       if constexpr (dim == 2) {
         if (prescribed.acceleration)
           prescribed_force_to_tile<Kernel>(points, range, tile_origin(pb), tile);

@@ -213,8 +213,7 @@ class Simulation::Impl {
   void remove_outflow();
   double initial_power() const;
   /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].
-  double power_of(const PointsOf<dim>& points, std::size_t body, std::size_t slot,
-                  double dt) const;
+  double power_of(const PointsOf<dim>& points, std::size_t body, std::size_t slot, double dt) const;
   std::string describe(const PointsOf<dim>& points, std::size_t body, std::size_t slot) const;
 
   /// What water bears of the points of a body below the water table, m s (−g) each.

@@ -470,8 +470,8 @@ TEST(StartKeys, are_read_and_complain) {
   const auto with = [&](const std::string& keys) {
     return replaced(granular, "end_time", keys + "\nend_time");
   };
-  const SceneFile file =
-      read(with("gravity_ramp = 0.5\nwater_table = 0.1\nwater_density = 1030\nstart = \"as_given\""));
+  const SceneFile file = read(
+      with("gravity_ramp = 0.5\nwater_table = 0.1\nwater_density = 1030\nstart = \"as_given\""));
   EXPECT_EQ(file.scene.gravity_ramp, 0.5);
   EXPECT_EQ(file.scene.water_table, 0.1);
   EXPECT_EQ(file.scene.water_density, 1030.0);

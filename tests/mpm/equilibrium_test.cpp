@@ -325,10 +325,11 @@ TEST(GravityRamp, PreparesABed) {
       exact += 1500.0 * g * weight * V;
       volume += V;
     }
-    std::printf("[ measured ] peak kinetic/potential %.2g, mean stress %.4f of the exact, residual "
-                "%.2g of the potential\n",
-                peak / row.potential_J_per_m, stress / exact,
-                row.energy_residual_J_per_m / row.potential_J_per_m);
+    std::printf(
+        "[ measured ] peak kinetic/potential %.2g, mean stress %.4f of the exact, residual "
+        "%.2g of the potential\n",
+        peak / row.potential_J_per_m, stress / exact,
+        row.energy_residual_J_per_m / row.potential_J_per_m);
     // a layer of stiffness M on its first wave, ω = π/2H √(M/ρ) = 300/s, is driven for 0.4 s by a
     // force whose second derivative is 6/T²: it swings by 6/(ωT)² = 4e-4 of its weight's stress
     EXPECT_NEAR(stress / exact, 1.0, 0.01);
