@@ -42,6 +42,25 @@ void general_keys(Keys& keys, mpm::Scene& scene) {
   keys.number({"gravity", "m/s²", "gravity", not_negative}, scene.gravity);
   keys.number({"tilt_deg", "°", "tilt of the box, towards +x", Range{-90.0, 90.0, false, false}},
               scene.tilt_deg);
+  keys.number({"gravity_ramp", "s", "time over which gravity grows from 0 (0: it is there at once)",
+               not_negative},
+              scene.gravity_ramp);
+  static constexpr std::array<std::string_view, 2> starts{"as_given", "at_rest"};
+  std::optional<std::size_t> start;
+  if (scene.equilibrium) start = *scene.equilibrium ? 1 : 0;
+  keys.word({"start", "-",
+             "at_rest: the stresses of lithostatic bodies are corrected until nothing moves; the "
+             "default where all bodies are lithostatic and there are several, or a polygon"},
+            starts, start);
+  if (start) scene.equilibrium = *start == 1;
+  keys.text({"start_from", "-",
+             "result folder of a run with output.final_state = true, whose points the bodies are"},
+            scene.start_from);
+  keys.number({"water_table", "m", "height below which bodies are buoyant"}, scene.water_table);
+  keys.number(
+      Key{"water_density", "kg/m³", "of the water below the water table", positive}.only_if(
+          scene.water_table.has_value(), "only a scene with a water_table has a water_density"),
+      scene.water_density);
   if (TomlReader* const table = keys.reader(); table != nullptr && !fits_file_name(scene.name))
     table->report("name", fmt::format("scene.name = \"{}\" becomes part of file names: letters, "
                                       "digits, '.', '_' and '-' only, no '.' in front",
@@ -270,7 +289,8 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
 
 void body_initial_keys(Keys& keys, mpm::Body& body) {
   initial_keys(keys, body.initial);
-  keys.boolean({"lithostatic", "-", "p grows with depth below the body's top; K0 and ocr apply"},
+  keys.boolean({"lithostatic", "-",
+                "the vertical stress is the weight of what stands over a place; K0 and ocr apply"},
                body.lithostatic);
 }
 
@@ -476,6 +496,8 @@ void output_keys(Keys& keys, SceneFile& file) {
        "for none",
        not_negative},
       file.checkpoint_interval);
+  keys.boolean({"final_state", "-", "final_state.h5, which another scene can start_from"},
+               file.final_state);
   keys.boolean({"shear_strain", "-", "of every point since the start, in frames"},
                file.scene.shear_strain);
   keys.choice(
@@ -568,6 +590,11 @@ SceneFile read_scene(InputFile& file) {
       file.report(error);
     }
   }
+  if (!scene.start_from.empty())
+    result.notes.push_back(
+        fmt::format("scene.start_from: bodies start as {} has left them, whatever "
+                    "shape, velocity and initial state is given here",
+                    scene.start_from));
   for (const mpm::Body& body : scene.bodies)
     if (body.law.name == umat::law_name && scene.pressure_averaging > 0.0)
       file.report("step.pressure_averaging",

@@ -18,6 +18,7 @@ struct SceneFile {
   mpm::Stress stress = mpm::Stress::averaged;  ///< of frames and final.svg
   PictureField colour = PictureField::mises;
   double checkpoint_interval = 60.0;  ///< wall-clock time between checkpoints, 0 for none [s]
+  bool final_state = false;           ///< whether it leaves a final_state.h5
   std::vector<std::string> notes;     ///< what was made of the input that the user may not expect
 };
 

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 74> outputs{"manifest.json",
+constexpr std::array<std::string_view, 75> outputs{"manifest.json",
                                                    "largest_depth.asc",
                                                    "largest_depth.prj",
                                                    "largest_speed.asc",
@@ -48,6 +48,7 @@ constexpr std::array<std::string_view, 74> outputs{"manifest.json",
                                                    "curves.csv",
                                                    "finished.jsonl",
                                                    "checkpoint.h5",
+                                                   "final_state.h5",
                                                    "series.csv",
                                                    "profile.csv",
                                                    "curve.csv",

@@ -64,6 +64,21 @@ NodeSums join_periodic_edges(Grid& grid) {
   return change;
 }
 
+void transpose_periodic_edges(Grid& grid) {
+  for (int j = -shared; j <= grid.ny() + shared; ++j)
+    for (int i = shared; i >= -shared; --i) {
+      const Nodes nodes{{grid.node(i, j), grid.node(i + grid.nx(), j)}};
+      double mass = 0.0;
+      nodes.each([&](const NodeBlock& b, std::size_t n) { mass += b.mass[n]; });
+      if (mass == 0.0) continue;
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        double sum = 0.0;
+        nodes.each([&](const NodeBlock& b, std::size_t n) { sum += b.v[axis][n]; });
+        nodes.each([&](NodeBlock& b, std::size_t n) { b.v[axis][n] = b.mass[n] / mass * sum; });
+      }
+    }
+}
+
 double wrap_points(PointSet& points, double width, double gravity_x) {
   double energy = 0.0;
   for (std::size_t s = 0; s < points.slots(); ++s) {

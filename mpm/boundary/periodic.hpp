@@ -23,6 +23,9 @@ struct NodeSums {
 /// does not.
 NodeSums join_periodic_edges(Grid& grid);
 
+/// Does to the velocities after forces the transposed of what the joining did.
+void transpose_periodic_edges(Grid& grid);
+
 /// Brings points back into [0, width) of x. Returns the change of −Σ m g_x x, the work of gravity
 /// on what comes in again where it started.
 double wrap_points(PointSet& points, double width, double gravity_x);

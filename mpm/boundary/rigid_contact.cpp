@@ -431,6 +431,85 @@ WallEffect RigidContact<dim>::apply(GridOf<dim>& grid, double time, bool sorted,
   return effect;
 }
 
+/// With o = N_o(v_g + sV), e = N_e(v_g − V) apply() is
+///   v_j + a_j + b_j,  v_g − o − sΣ w a − e + Σ w b,
+///   a_j = −Σ_g m_g w s o/(m_j + Σ m_g w s²),  b_j = Σ_g m_g w e/(m_j + Σ m_g w).
+template <int dim>
+void RigidContact<dim>::transpose(const Surface& surface, const Layer& layer, GridOf<dim>& grid) {
+  const auto read_at = [&](const auto& at) {
+    return read<dim>(grid.node_blocks[static_cast<std::size_t>(at.block)].v, at.place);
+  };
+  const auto add_at = [&](const auto& at, const Vector<dim>& by) {
+    NodeBlockOf<dim>& nb = grid.node_blocks[static_cast<std::size_t>(at.block)];
+    for (std::size_t i = 0; i < dim; ++i) nb.v[i][static_cast<std::size_t>(at.place)] += by[i];
+  };
+  const auto each_donor = [&](const Ghost& ghost, auto&& f) {
+    for (std::size_t k = 0; k < ghost.donor.size(); ++k) {
+      if (ghost.donor[k] < 0) continue;
+      const auto n = static_cast<std::size_t>(ghost.donor[k]);
+      if (layer.donors[n].mass > 0.0) f(n, ghost.weight[k] * ghost.per_borne);
+    }
+  };
+  // of a and b, over their denominators
+  std::vector<Vector<dim>> odd(layer.donors.size()), even(layer.donors.size());
+  for (std::size_t n = 0; n < layer.donors.size(); ++n)
+    if (layer.donors[n].mass > 0.0) odd[n] = even[n] = read_at(layer.donors[n]);
+  for (const Ghost& ghost : layer.ghosts) {
+    if (!ghost.acts) continue;
+    const Vector<dim> x = read_at(ghost);
+    each_donor(ghost, [&](std::size_t n, double w) {
+      add(odd[n], -ghost.s * w, x);
+      add(even[n], w, x);
+    });
+  }
+  for (std::size_t n = 0; n < layer.donors.size(); ++n) {
+    const Donor& donor = layer.donors[n];
+    if (!(donor.mass > 0.0)) continue;
+    for (std::size_t i = 0; i < dim; ++i) {
+      odd[n][i] /= donor.odd_mass;
+      even[n][i] /= donor.even_mass;
+    }
+  }
+  for (const Ghost& ghost : layer.ghosts) {
+    if (!ghost.acts) continue;
+    const Vector<dim> x = read_at(ghost);
+    const double s = ghost.per_borne > 0.0 ? ghost.s : 0.0;
+    Vector<dim> of_odd{}, of_even{};
+    add(of_odd, -1.0, x);
+    add(of_even, -1.0, x);
+    each_donor(ghost, [&](std::size_t n, double w) {
+      add(of_odd, -ghost.mass * w * s, odd[n]);
+      add(of_even, ghost.mass * w, even[n]);
+    });
+    if (surface.contact == Surface::Contact::slip) {
+      const double n_odd = dot(of_odd, ghost.normal), n_even = dot(of_even, ghost.normal);
+      for (std::size_t i = 0; i < dim; ++i) {
+        of_odd[i] = n_odd * ghost.normal[i];
+        of_even[i] -= n_even * ghost.normal[i];
+      }
+      if (!(ghost.per_borne > 0.0)) of_even = {};
+    } else {
+      of_even = {};
+    }
+    Vector<dim> both = of_odd;
+    add(both, 1.0, of_even);
+    add_at(ghost, both);
+    Vector<dim> turned_back = of_even;  // Aᵀ
+    for (std::size_t i = 0; i < dim; ++i) add(turned_back, of_even[i], ghost.turn[i]);
+    each_donor(ghost, [&](std::size_t n, double w) {
+      Vector<dim> back{};
+      add(back, s * w, of_odd);
+      add(back, -w, turned_back);
+      add_at(layer.donors[n], back);
+    });
+  }
+}
+
+template <int dim>
+void RigidContact<dim>::transpose(GridOf<dim>& grid) const {
+  for (std::size_t k = surfaces_.size(); k-- > 0;) transpose(surfaces_[k], layers_[k], grid);
+}
+
 template <int dim>
 bool RigidContact<dim>::keep_out(std::array<double, dim>& x, double time, double hair) const {
   bool moved = false;

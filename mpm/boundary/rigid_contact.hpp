@@ -50,6 +50,9 @@ class RigidContact {
   /// blocks are not those of the call before. Returns what it did to the energy, and adds to `work`
   /// that of the surfaces' own motion on the material.
   WallEffect apply(GridOf<dim>& grid, double time, bool sorted, double& work);
+  /// Does to the grid's velocities after forces the transposed of what the last apply() did, of
+  /// surfaces at rest without friction.
+  void transpose(GridOf<dim>& grid) const;
   /// Puts a place that lies behind a surface on its front side, a hair away. Returns whether it
   /// did.
   bool keep_out(std::array<double, dim>& x, double time, double hair) const;
@@ -104,6 +107,7 @@ class RigidContact {
                     const NodeBlockOf<dim>& block);
   bool is_above_lid(std::size_t surface, const std::array<double, dim>& x) const;
   WallEffect apply(const Surface& surface, Layer& layer, GridOf<dim>& grid, double& work) const;
+  static void transpose(const Surface& surface, const Layer& layer, GridOf<dim>& grid);
 
   std::vector<Surface> surfaces_;
   std::vector<Layer> layers_;

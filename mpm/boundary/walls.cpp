@@ -167,7 +167,7 @@ WallEffect apply_to_triple(const OfWall& wall, double inward, const WallNode<dim
     const auto place = [](const WallNode<dim>& n) {
       return MirroredTriple::Node{n.index, static_cast<std::int32_t>(n.place)};
     };
-    record->push_back({{place(a), place(b), place(c)}, a.normal == 0, m_a, m_c, stick, {}});
+    record->push_back({{place(a), place(b), place(c)}, a.normal, m_a, m_c, stick, {}});
     if (gives_impulses) record->back().conserves = m;
   }
   // along the first of its axes; where material comes in, across it
@@ -349,6 +349,33 @@ WallEffect apply_walls(GridOf<dim>& grid, const Walls& walls, std::vector<Mirror
 template WallEffect apply_walls(GridOf<2>&, const Walls&, std::vector<MirroredTriple>*);
 template WallEffect apply_walls(GridOf<3>&, const Walls&, std::vector<MirroredTriple>*);
 
+template <int dim>
+void transpose_walls(GridOf<dim>& grid, const std::vector<MirroredTriple>& record) {
+  for (auto triple = record.rbegin(); triple != record.rend(); ++triple) {
+    const MirroredTriple& at = *triple;
+    const auto value = [&](std::size_t k, std::size_t axis) -> double* {
+      if (at.node[k].block < 0) return nullptr;
+      return grid.node_blocks[static_cast<std::size_t>(at.node[k].block)].v[axis].data() +
+             at.node[k].place;
+    };
+    const double mass = at.m_a + at.m_c, share = mass > 0.0 ? 1.0 / mass : 0.0;
+    for (std::size_t axis = 0; axis < dim; ++axis) {
+      std::array<double, 3> x{};  // behind, on and inside
+      for (std::size_t k = 0; k < 3; ++k)
+        if (const double* const there = value(k, axis)) x[k] = *there;
+      // of Triple::mirrored(): even and odd parts of what a and c become
+      const double stick = axis == at.normal ? 1.0 : at.stick;
+      const double even = (1.0 - stick) * (x[2] + x[0]), odd = stick * (x[2] - x[0]);
+      x = {at.m_a * share * (even - odd), (1.0 - stick) * x[1], at.m_c * share * (even + odd)};
+      for (std::size_t k = 0; k < 3; ++k)
+        if (double* const there = value(k, axis)) *there = x[k];
+    }
+  }
+}
+
+template void transpose_walls(GridOf<2>&, const std::vector<MirroredTriple>&);
+template void transpose_walls(GridOf<3>&, const std::vector<MirroredTriple>&);
+
 void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity) {
   for (const MirroredTriple& at : record) {
     const auto component = [&](std::size_t k, bool x) -> double* {
@@ -357,16 +384,16 @@ void mirror(const std::vector<MirroredTriple>& record, NodeVector& velocity) {
       return &(x ? nodes.x : nodes.y)[static_cast<std::size_t>(at.node[k].place)];
     };
     const auto read = [&](std::size_t k) {
-      const double* n = component(k, at.normal_is_x);
-      return n != nullptr ? Parts<2>{*n, {*component(k, !at.normal_is_x)}} : Parts<2>{};
+      const double* n = component(k, at.normal == 0);
+      return n != nullptr ? Parts<2>{*n, {*component(k, at.normal != 0)}} : Parts<2>{};
     };
     const Triple<2> given{read(0), read(1), read(2)};
     Triple<2> mirrored = given.mirrored(at.m_a, at.m_c, at.stick);
     if (at.conserves) mirrored = with_momentum_of(given, mirrored, *at.conserves);
     const auto write = [&](std::size_t k, const Parts<2>& v) {
       if (at.node[k].block < 0) return;
-      *component(k, at.normal_is_x) = v.n;
-      *component(k, !at.normal_is_x) = v.t[0];
+      *component(k, at.normal == 0) = v.n;
+      *component(k, at.normal != 0) = v.t[0];
     };
     write(0, mirrored.a);
     write(1, mirrored.b);

@@ -66,7 +66,7 @@ struct MirroredTriple {
     std::int32_t place = 0;
   };
   std::array<Node, 3> node;
-  bool normal_is_x = true;
+  std::size_t normal = 0;       ///< axis across the wall
   double m_a = 0.0, m_c = 0.0;  ///< masses behind and inside, as they weigh here [kg/m]
   double stick = 0.0;           ///< 0: tangential even, 1: odd
   /// Of a frictional wall, which mirrors u without loss of momentum: masses as they are [kg/m]
@@ -74,10 +74,14 @@ struct MirroredTriple {
 };
 
 /// Applies the walls to the node velocities before and after forces. `record`, if given, is filled
-/// with what they did, in its order (in the plane).
+/// with what they did, in its order.
 template <int dim>
 WallEffect apply_walls(GridOf<dim>& grid, const Walls& walls,
                        std::vector<MirroredTriple>* record = nullptr);
+
+/// Does to the grid's velocities after forces the transposed of what slip and no-slip walls did.
+template <int dim>
+void transpose_walls(GridOf<dim>& grid, const std::vector<MirroredTriple>& record);
 
 /// Does to another velocity, momentum of the points over mass of the nodes, what the walls did to
 /// those of the grid: the images behind the walls take part in it, with the same share of sticking.

@@ -7,71 +7,14 @@
 #include <set>
 
 #include <fmt/core.h>
-#include <hdf5.h>
 
-#include "io/atomic_file.hpp"
-#include "io/seal.hpp"
+#include "mpm/output/hdf5_arrays.hpp"
 #include "mpm/step/simulation_impl.hpp"
 
 namespace repose::mpm {
 namespace {
 
 constexpr std::int64_t format_version = 7;
-
-/// An open HDF5 object, closed by its own function.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_(id), close_(close) {
-    if (id < 0) throw std::runtime_error(fmt::format("HDF5 could not {}", what));
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-template <class T>
-hid_t type_of();
-template <>
-hid_t type_of<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-hid_t type_of<std::int64_t>() {
-  return H5T_NATIVE_INT64;
-}
-
-/// With a checksum in every chunk (Fletcher's), which reading compares.
-template <class T>
-void write(hid_t file, const std::string& name, const std::vector<T>& values) {
-  const hsize_t n = values.size(), chunk = std::min<hsize_t>(n, 1 << 20);
-  const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a data space");
-  const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make a property list");
-  if (n > 0 && (H5Pset_chunk(layout, 1, &chunk) < 0 || H5Pset_fletcher32(layout) < 0))
-    throw std::runtime_error("HDF5 has no checksums");
-  const Handle set(
-      H5Dcreate2(file, name.c_str(), type_of<T>(), space, H5P_DEFAULT, layout, H5P_DEFAULT),
-      H5Dclose, "create a data set");
-  if (n > 0 && H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    throw std::runtime_error(fmt::format("HDF5 could not write {}", name));
-}
-
-template <class T>
-std::vector<T> read(hid_t file, const std::string& name) {
-  const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, ("find " + name).c_str());
-  const Handle space(H5Dget_space(set), H5Sclose, "read a data space");
-  const hssize_t count = H5Sget_simple_extent_npoints(space);
-  if (count < 0) throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
-  std::vector<T> values(static_cast<std::size_t>(count));
-  if (!values.empty() &&
-      H5Dread(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    throw std::runtime_error(fmt::format("HDF5 could not read {}", name));
-  return values;
-}
 
 /// Every scalar that a run carries along, in one fixed order for both directions.
 template <class Impl, class Real, class Whole>
@@ -122,22 +65,6 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
   for (auto& entry : s.entries) whole(entry.rows);
 }
 
-/// Turns HDF5's own error printing off for a while.
-class Quiet {
- public:
-  Quiet() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
-};
-
 /// What the steps rely on without asking, of the points of a body: finite numbers, mass, and every
 /// slot in the range of one block, not farther from it than the tile of the block reaches. Throws
 /// std::runtime_error with what is wrong: a checkpoint may be whole and yet be another scene's, or
@@ -186,21 +113,18 @@ void require_sound(const PointsOf<dim>& points, std::size_t body,
 
 template <int dim>
 void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
-  const Quiet quiet;
+  const hdf5::Quiet quiet;
   const Impl& s = *this;
   // assembled in memory, so that the disk sees one plain write that is whole or absent
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
-  H5Pset_fapl_core(access, 1 << 20, false);
-  const Handle file(H5Fcreate("checkpoint", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
-                    "create a file in memory");
+  const hdf5::NewFile file;
 
   std::vector<double> reals;
   std::vector<std::int64_t> wholes{format_version, s.must_sort ? 1 : 0,
                                    static_cast<std::int64_t>(pack_size)};
   each_scalar(
       s, [&](double x) { reals.push_back(x); }, [&](std::int64_t x) { wholes.push_back(x); });
-  write(file, "reals", reals);
-  write(file, "wholes", wholes);
+  hdf5::write(file, "reals", reals);
+  hdf5::write(file, "wholes", wholes);
 
   std::vector<std::int64_t> blocks;
   for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
@@ -210,42 +134,31 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
       blocks.push_back(static_cast<std::int64_t>(range.count));
     }
   }
-  write(file, "blocks", blocks);
+  hdf5::write(file, "blocks", blocks);
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const PointsOf<dim>& points = s.bodies[b];
-    write(file, fmt::format("body{}_id", b), points.id);
+    hdf5::write(file, fmt::format("body{}_id", b), points.id);
     for (std::size_t f = 0; f < points.fields; ++f)
-      write(file, fmt::format("body{}_field{}", b, f), points.values(f));
+      hdf5::write(file, fmt::format("body{}_field{}", b, f), points.values(f));
   }
   if (s.maps) {
-    write(file, "maps_gone", std::vector<double>{s.maps->gone});
-    write(file, "maps_depth_max", s.maps->depth_max);
-    write(file, "maps_speed_max", s.maps->speed_max);
-    write(file, "maps_arrival", s.maps->arrival);
+    hdf5::write(file, "maps_gone", std::vector<double>{s.maps->gone});
+    hdf5::write(file, "maps_depth_max", s.maps->depth_max);
+    hdf5::write(file, "maps_speed_max", s.maps->speed_max);
+    hdf5::write(file, "maps_arrival", s.maps->arrival);
   }
-  H5Fflush(file, H5F_SCOPE_GLOBAL);
-  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  if (size < 0) throw std::runtime_error("HDF5 could not give the checkpoint's size");
-  std::string image(static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file, image.data(), image.size()) < 0)
-    throw std::runtime_error("HDF5 could not give the checkpoint's bytes");
-  io::write_atomically(path, io::sealed(std::move(image)));
+  file.save(path);
 }
 
 template <int dim>
 void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
-  const Quiet quiet;
+  const hdf5::Quiet quiet;
   Impl& s = *this;
   const auto reject = [&](const std::string& why) { throw io::IoError(path, why); };
   try {
-    std::string image = io::read_sealed(path);
-    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list");
-    H5Pset_fapl_core(access, 1, false);
-    if (H5Pset_file_image(access, image.data(), image.size()) < 0) reject("HDF5 takes no image");
-    const Handle file(H5Fopen("checkpoint", H5F_ACC_RDONLY, access), H5Fclose,
-                      "open it as a checkpoint");
-    const std::vector<double> reals = read<double>(file, "reals");
-    const std::vector<std::int64_t> wholes = read<std::int64_t>(file, "wholes");
+    const hdf5::SealedFile file(path);
+    const std::vector<double> reals = hdf5::read<double>(file, "reals");
+    const std::vector<std::int64_t> wholes = hdf5::read<std::int64_t>(file, "wholes");
     if (wholes.size() < 3 || wholes[0] != format_version)
       reject("it is a checkpoint of another version of repose");
     if (wholes[2] != static_cast<std::int64_t>(pack_size))
@@ -275,9 +188,9 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
 
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
       PointsOf<dim>& points = s.bodies[b];
-      points.id = read<std::int64_t>(file, fmt::format("body{}_id", b));
+      points.id = hdf5::read<std::int64_t>(file, fmt::format("body{}_id", b));
       for (std::size_t f = 0; f < points.fields; ++f) {
-        const auto values = read<double>(file, fmt::format("body{}_field{}", b, f));
+        const auto values = hdf5::read<double>(file, fmt::format("body{}_field{}", b, f));
         if (values.size() != points.id.size()) reject("its arrays differ in length");
         points.assign(f, values);
       }
@@ -287,7 +200,7 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
 
     if (s.maps) {
       const auto restore = [&](const char* name, std::vector<double>& map) {
-        std::vector<double> values = read<double>(file, name);
+        std::vector<double> values = hdf5::read<double>(file, name);
         if (values.size() != map.size()) reject("its maps are of another size");
         map = std::move(values);
       };
@@ -299,7 +212,7 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
       restore("maps_arrival", s.maps->arrival);
     }
 
-    const std::vector<std::int64_t> blocks = read<std::int64_t>(file, "blocks");
+    const std::vector<std::int64_t> blocks = hdf5::read<std::int64_t>(file, "blocks");
     const std::size_t width = dim + 2 * s.bodies.size();
     if (blocks.size() % width != 0) reject("it holds another number of bodies");
     std::vector<PointBlockOf<dim>> restored(blocks.size() / width);
@@ -321,6 +234,7 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
     for (std::size_t b = 0; b < s.bodies.size(); ++b)
       require_sound(s.bodies[b], b, restored, s.grid, s.walls, s.must_sort);
     s.grid.restore(std::move(restored));
+    s.gravity = s.gravity_now();
   } catch (const io::IoError&) {
     throw;
   } catch (const std::exception& e) {

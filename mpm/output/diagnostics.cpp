@@ -140,6 +140,16 @@ template <int dim>
 std::vector<std::string> Simulation::Impl<dim>::warnings() const {
   std::vector<std::string> list;
   const Impl& s = *this;
+  if (s.equilibrium.sought && !s.equilibrium.found())
+    list.push_back(fmt::format(
+        "no state at rest was found to start from: {:.2g} of the weight is out of balance ({:.2g} "
+        "of the first guess), {} points are at the limit of their strength{}: a slope steeper than "
+        "its friction, or something without a hold",
+        std::max(s.equilibrium.residual, s.equilibrium.in_step), s.equilibrium.guess,
+        s.equilibrium.limited,
+        s.equilibrium.residual <= Equilibrium::enough
+            ? ", and an edge or surface slides or parts under it"
+            : ""));
   if (s.scene.dt) {
     const double courant =
         std::max(s.fixed_step_excess, *s.scene.dt * s.seen().signal / s.grid.h());
@@ -192,6 +202,7 @@ Simulation::Counters Simulation::Impl<dim>::counters() const {
           .point_steps_held = s.point_steps_held,
           .newton_iterations = s.newton_iterations,
           .cg_iterations = s.cg_iterations,
+          .out_of_balance = std::max(s.equilibrium.residual, s.equilibrium.in_step),
           .memory_MB = bytes / 1e6,
           .threads = s.threads};
 }

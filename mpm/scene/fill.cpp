@@ -1,9 +1,11 @@
 #include "mpm/scene/fill.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -22,75 +24,169 @@ auto within(const std::string& table, F&& f) {
   }
 }
 
-/// The weight of bodies upon a body, per area [Pa]. Bodies are looked up column by column: those
-/// that stand over a place without a gap, from the body's top to a free surface.
-class Load {
+/// A part of a body over a place, from a height to another [m].
+struct Span {
+  double low = 0.0, high = 0.0;
+};
+
+/// What of a body stands over (x, z), from below; z counts in space only.
+std::vector<Span> spans_over(const Scene& scene, const Body& body, double x, double z) {
+  const auto reaches = [&](std::size_t axis, double at) {
+    return at >= body.origin[axis] && at < body.origin[axis] + body.size[axis];
+  };
+  if (!reaches(0, x) || (scene.dimensions() == 3 && !reaches(2, z))) return {};
+  std::vector<Span> spans;
+  if (body.release) {
+    const double half = 0.5 * point_spacing(scene);
+    const double depth =
+        scene.terrain->release->volume_over({x - half, z - half}, {x + half, z + half}) /
+        (4.0 * half * half);
+    const double ground = scene.terrain->ground->height(x, z);
+    if (depth > 0.0) spans.push_back({ground, ground + depth});
+    return spans;
+  }
+  if (body.polygon) {
+    std::vector<double> heights;
+    const auto& c = body.polygon->corners;
+    for (std::size_t i = 0, j = c.size() - 1; i < c.size(); j = i++)
+      if ((c[i][0] > x) != (c[j][0] > x))
+        heights.push_back(c[j][1] + (x - c[j][0]) / (c[i][0] - c[j][0]) * (c[i][1] - c[j][1]));
+    std::sort(heights.begin(), heights.end());
+    for (std::size_t k = 0; k + 1 < heights.size(); k += 2)
+      spans.push_back({heights[k], heights[k + 1]});
+    return spans;
+  }
+  if (body.disc && scene.dimensions() == 2) return {};  // it touches in a point
+  if (body.disc) {
+    const double r = std::hypot(x - body.disc->centre[0], z - body.disc->centre[1]);
+    if (r < body.disc->hole || r >= body.disc->radius) return {};
+  }
+  spans.push_back({body.origin[1], body.origin[1] + body.size[1]});
+  return spans;
+}
+
+/// The weight upon the places of a body: of what stands over them without a gap, from the place up
+/// to a free surface or to what is rigid and bears the rest.
+class Overburden {
  public:
-  Load(const Scene& scene, const Body& body, double g)
+  /// `spacing`: of the body's points along y.
+  Overburden(const Scene& scene, const Body& body, double g, double spacing)
       : scene_(scene),
+        surfaces_(rigid_surfaces(scene)),
         body_(body),
         g_(g),
-        gap_(0.5 * point_spacing(scene)) {}
+        spacing_(spacing) {}
 
-  /// At (x, z); z counts in space only. The same stack of bodies is summed up once.
-  double at(double x, double z) {
-    std::vector<std::size_t> stack;
-    for (double top = body_.origin[1] + body_.size[1];;) {
-      const std::size_t next = upon(x, z, top);
-      if (next == scene_.bodies.size()) break;
-      stack.push_back(next);
-      top = scene_.bodies[next].origin[1] + scene_.bodies[next].size[1];
+  /// The vertical stress at a place of the body; z counts in space only.
+  double at(const Material& material, double x, double y, double z) {
+    const auto own = static_cast<std::size_t>(&body_ - scene_.bodies.data());
+    Part part{own, {y, y}};
+    for (const Span& span : spans_over(scene_, body_, x, z))
+      if (y >= span.low - gap() && y <= span.high + gap()) part.span = {y, span.high};
+    std::vector<Part> stack;
+    bool borne = cut(part.span, x, z);
+    const Span span = part.span;
+    while (!borne && upon(x, z, part)) {
+      borne = cut(part.span, x, z);
+      stack.push_back(part);
     }
-    const auto [place, is_new] = known_.try_emplace(stack, 0.0);
-    if (is_new)
-      for (std::size_t i = stack.size(); i-- > 0;)
-        place->second = below(scene_.bodies[stack[i]], stack[i], place->second);
-    return place->second;
+    double above = 0.0;
+    if (!stack.empty()) {
+      const auto [place, is_new] = known_.try_emplace(stack, 0.0);
+      if (is_new)
+        for (std::size_t i = stack.size(); i-- > 0;) place->second = below(stack[i], place->second);
+      above = place->second;
+    }
+    if (span.low != last_.span.low || span.high != last_.span.high || above != last_.above)
+      last_ = {span, above, column(material, body_, span, above)};
+    return last_.stress;
   }
 
  private:
-  /// The body whose base stands at this height over (x, z); the number of bodies if there is none.
-  std::size_t upon(double x, double z, double height) const {
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
-      const Body& other = scene_.bodies[i];
-      const auto spans = [&](std::size_t axis, double at) {
-        return at >= other.origin[axis] && at < other.origin[axis] + other.size[axis];
-      };
-      if (&other == &body_ || std::abs(other.origin[1] - height) > gap_ || !spans(0, x)) continue;
-      if (other.polygon)
-        throw InputError("lithostatic", fmt::format("body[{}], which stands on this one, is a "
-                                                    "polygon: its weight upon a place is not known",
-                                                    i));
-      if (scene_.dimensions() == 2 && other.disc) continue;  // it touches in a point
-      if (scene_.dimensions() == 3 && !spans(2, z)) continue;
-      if (other.disc) {
-        const double r = std::hypot(x - other.disc->centre[0], z - other.disc->centre[1]);
-        if (r < other.disc->hole || r >= other.disc->radius) continue;
-      }
-      return i;
+  struct Part {
+    std::size_t body = 0;
+    Span span;
+    friend bool operator<(const Part& a, const Part& b) {
+      return std::tie(a.body, a.span.low, a.span.high) < std::tie(b.body, b.span.low, b.span.high);
     }
-    return scene_.bodies.size();
+  };
+  double gap() const { return 0.5 * spacing_; }
+
+  /// Goes on to the part of a body whose base stands on the top of `part`.
+  bool upon(double x, double z, Part& part) const {
+    const double top = part.span.high;
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
+      for (const Span& span : spans_over(scene_, scene_.bodies[i], x, z)) {
+        const bool itself = i == part.body && span.high <= top;
+        if (itself || std::abs(span.low - top) > gap()) continue;
+        part = {i, span};
+        return true;
+      }
+    return false;
   }
 
-  /// The vertical stress below a body that carries `above`.
-  double below(const Body& body, std::size_t index, double above) const {
+  /// Ends a span where a rigid surface begins. Returns whether one does.
+  bool cut(Span& span, double x, double z) const {
+    if (surfaces_.empty()) return false;
+    const auto rigid = [&](double y) {
+      return std::any_of(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) {
+        return s.holds_at(0.0, {x, y, z});
+      });
+    };
+    const int steps = static_cast<int>(std::ceil((span.high - span.low) / gap()));
+    for (int k = 1; k <= steps; ++k) {
+      const double y = span.low + (span.high - span.low) * k / steps;
+      if (!rigid(y)) continue;
+      double free = span.low + (span.high - span.low) * (k - 1) / steps, held = y;
+      for (int halving = 0; halving < 40; ++halving) {
+        const double middle = 0.5 * (free + held);
+        (rigid(middle) ? held : free) = middle;
+      }
+      span.high = free;
+      return true;
+    }
+    return false;
+  }
+
+  /// The vertical stress at the lower end of a part of a body that carries `above`.
+  double column(const Material& material, const Body& body, const Span& span, double above) const {
+    const double wet_top = std::clamp(scene_.water_table.value_or(span.low), span.low, span.high);
+    const double dry = dry_column(material, body, g_, span.high - wet_top, above);
+    if (wet_top == span.low) return dry;
+    return dry_column(material, body, g_ * (1.0 - buoyant_share(scene_, material)),
+                      wet_top - span.low, dry);
+  }
+
+  /// The same over a depth under one gravity.
+  double dry_column(const Material& material, const Body& body, double g, double depth,
+                    double above) const {
+    if (!body.lithostatic) return above + g * material.initial(body.initial).density * depth;
+    // steps of a quarter spacing: the error of the fourth-order rule is far below round-off of σ
+    const int steps = static_cast<int>(std::ceil(depth / (0.25 * spacing_)));
+    return overburden(material, body.initial.ocr.value_or(1.0), body.initial.K0.value_or(1.0), g,
+                      depth, steps, above);
+  }
+
+  /// The vertical stress below a part that carries `above`.
+  double below(const Part& part, double above) const {
     try {
-      const std::unique_ptr<Material> material = make_material(body.law);
-      if (!body.lithostatic)
-        return above + g_ * material->initial(body.initial).density * body.size[1];
-      const int steps = static_cast<int>(std::ceil(body.size[1] / (0.5 * gap_)));
-      return overburden(*material, body.initial.ocr.value_or(1.0), body.initial.K0.value_or(1.0),
-                        g_, body.size[1], steps, above);
+      const Body& body = scene_.bodies[part.body];
+      return column(*make_material(body.law), body, part.span, above);
     } catch (const InputError& e) {
-      throw InputError("lithostatic", "body[" + std::to_string(index) +
+      throw InputError("lithostatic", "body[" + std::to_string(part.body) +
                                           "], which stands on this one: " + e.what());
     }
   }
 
   const Scene& scene_;
+  std::vector<Surface> surfaces_;
   const Body& body_;
-  double g_, gap_;
-  std::map<std::vector<std::size_t>, double> known_;
+  double g_, spacing_;
+  std::map<std::vector<Part>, double> known_;
+  struct {  // along a row of a box they are the same
+    Span span;
+    double above = std::numeric_limits<double>::quiet_NaN(), stress = 0.0;
+  } last_;
 };
 
 /// In the box, or in the disc (in space, cylinder) and not in its hole.
@@ -160,8 +256,19 @@ double overburden(const Material& material, double ocr, double K0, double g, dou
   return s;
 }
 
+double buoyant_share(const Scene& scene, const Material& material) {
+  if (!scene.water_table) return 0.0;
+  for (const std::string_view name : {"rho_p", "rho_0"})
+    for (const ParamInfo& parameter : material.law().parameters)
+      if (parameter.name == name) return scene.water_density / material.parameter(name);
+  throw InputError("law.name", fmt::format("{} has no density of its grains (rho_p) nor one to "
+                                           "start from (rho_0): below a water table its buoyancy "
+                                           "is not known",
+                                           material.law().name));
+}
+
 template <int dim>
-PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) {
+PointsOf<dim> without_points(const Body& body, const Scene& scene) {
   using F = Layout<dim>;
   PointsOf<dim> points;
   points.material =
@@ -185,7 +292,12 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   }
 
   points.single = scene.storage == Storage::single_precision;
+  return points;
+}
 
+template <int dim>
+PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) {
+  PointsOf<dim> points = without_points<dim>(body, scene);
   std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
   std::array<double, 3> origin = body.origin, spacing{};
   for (std::size_t i = 0; i < dim; ++i) spacing[i] = body.size[i] / static_cast<double>(lattice[i]);
@@ -219,24 +331,11 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   const auto coordinate = [&](std::size_t axis, std::int64_t n) {
     return origin[axis] + (static_cast<double>(n) + 0.5) * spacing[axis];
   };
-  // what stands on each column of the lattice
-  std::vector<double> load(static_cast<std::size_t>(lattice[0] * lattice[2]), 0.0);
-  if (body.lithostatic && scene.bodies.size() > 1) {
-    Load bodies(scene, body, g);
-    for (std::int64_t k = 0; k < lattice[2]; ++k)
-      for (std::int64_t i = 0; i < lattice[0]; ++i)
-        load[static_cast<std::size_t>(k * lattice[0] + i)] =
-            within("initial", [&] { return bodies.at(coordinate(0, i), coordinate(2, k)); });
-  }
-  const auto at_depth = [&](double depth, double above) {
+  Overburden weight(scene, body, g, spacing[1]);
+  /// The state under a vertical stress.
+  const auto under = [&](double vertical) {
     InitialConditions here = body.initial;
-    here.p = within("initial", [&] {
-      // steps of a quarter spacing: the error of the fourth-order rule is far below round-off of σ
-      const int steps = static_cast<int>(std::ceil(depth / (0.25 * spacing[1])));
-      return overburden(*points.material, body.initial.ocr.value_or(1.0), K0, g, depth, steps,
-                        above) *
-             (1.0 + 2.0 * K0) / 3.0;
-    });
+    here.p = vertical * (1.0 + 2.0 * K0) / 3.0;
     return initial(here);
   };
   const auto put = [&](const std::array<double, dim>& x, const InitialPoint& at, double of_point) {
@@ -264,7 +363,11 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
           const double share = (static_cast<double>(j) + 0.5) / static_cast<double>(count);
           const std::array<double, dim> place{x, ground + share * depth, z};
           if (behind_a_surface<dim>(surfaces, place)) continue;
-          put(place, body.lithostatic ? at_depth((1.0 - share) * depth, 0.0) : uniform,
+          put(place,
+              body.lithostatic
+                  ? under(within("initial",
+                                 [&] { return weight.at(*points.material, x, place[1], z); }))
+                  : uniform,
               of_column / static_cast<double>(count));
         }
       }
@@ -272,14 +375,9 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
   for (std::int64_t j = 0; !body.release && j < lattice[1]; ++j) {
     const double y = coordinate(1, j);
     InitialPoint at = uniform;
-    double above = std::numeric_limits<double>::quiet_NaN();  // of which `at` is made
+    double known = std::numeric_limits<double>::quiet_NaN();  // of which `at` is made
     for (std::int64_t k = 0; k < lattice[2]; ++k)
       for (std::int64_t i = 0; i < lattice[0]; ++i) {
-        const double here = load[static_cast<std::size_t>(k * lattice[0] + i)];
-        if (body.lithostatic && here != above) {
-          at = at_depth(body.origin[1] + body.size[1] - y, here);
-          above = here;
-        }
         std::array<double, dim> x{coordinate(0, i), y};
         if constexpr (dim == 3) x[2] = coordinate(2, k);
         double here_volume = volume;
@@ -293,6 +391,15 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
           here_volume = piece.area;
         }
         if (!within_shape<dim>(body, x) || behind_a_surface<dim>(surfaces, x)) continue;
+        if (body.lithostatic) {
+          const double vertical = within("initial", [&] {
+            return weight.at(*points.material, x[0], x[1], dim == 3 ? x[dim - 1] : 0.0);
+          });
+          if (vertical != known) {
+            at = under(vertical);
+            known = vertical;
+          }
+        }
         put(x, at, here_volume);
       }
   }
@@ -302,13 +409,15 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
                                   : "origin",
                      "all of the body lies within rigid surfaces: it has no points");
   // solid depths are measured at the loosest density the law knows by name, else as filled
-  points.rho_0 = points[F::rho][points.count - 1];
+  points.rho_0 = points[Layout<dim>::rho][points.count - 1];
   for (std::size_t k = 0; k < points.material->law().parameters.size(); ++k)
     if (points.material->law().parameters[k].name == "rho_0")
       points.rho_0 = points.material->theta()[k];
   return points;
 }
 
+template PointsOf<2> without_points<2>(const Body&, const Scene&);
+template PointsOf<3> without_points<3>(const Body&, const Scene&);
 template PointsOf<2> fill<2>(const Body&, const Scene&, std::int64_t);
 template PointsOf<3> fill<3>(const Body&, const Scene&, std::int64_t);
 template void add_point<2>(PointsOf<2>&, const std::array<double, 2>&, const std::array<double, 2>&,

@@ -129,6 +129,21 @@ double speed_of(const Scene& scene, const Inflow& inflow, double density) {
   return inflow.speed ? *inflow.speed : *inflow.rate / (density * stretch_of(scene, inflow).area());
 }
 
+bool has_edges_in_parts(const Scene& scene) {
+  for (std::size_t k = 0; k < edge_names.size(); ++k)
+    if (scene.edge(k).kind == Wall::Kind::parts) return true;
+  return !scene.inflows.empty();
+}
+
+bool seeks_equilibrium(const Scene& scene) {
+  if (scene.equilibrium) return *scene.equilibrium;
+  const auto& bodies = scene.bodies;
+  return scene.tilt_deg == 0.0 && !has_edges_in_parts(scene) &&
+         (bodies.size() > 1 || std::any_of(bodies.begin(), bodies.end(),
+                                           [](const Body& b) { return b.polygon.has_value(); })) &&
+         std::all_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.lithostatic; });
+}
+
 bool raise_top_to_cells(Scene& scene) {
   if (is_whole_multiple(scene.domain[1], scene.h)) return false;
   // 12 digits: 0.575, not 0.5750000000000001

@@ -85,7 +85,8 @@ struct Body {
   double spin = 0.0;  ///< initial angular velocity about z, through the body's centre [rad/s]
   LawSpec law;
   InitialConditions initial;
-  /// p grows with depth below the body's top; of `initial` only K0 (default 1) and ocr apply.
+  /// The vertical stress is the weight of all that stands over a place (fill.hpp), the horizontal
+  /// ones K0 times it; of `initial` only K0 (default 1) and ocr apply.
   bool lithostatic = false;
   /// Of the grains' contacts, which then damp elastic waves (step/contact_damping.hpp); 1: they do
   /// not
@@ -140,9 +141,19 @@ inline constexpr repose::Range courant_range{0.0, 1.4, true, false};
 
 struct Scene {
   std::string name;
-  double end_time = 0.0;  ///< [s]
-  double gravity = 9.8;   ///< [m/s²], downwards
-  double tilt_deg = 0.0;  ///< turns gravity so that material flows towards +x: g (sin, −cos)
+  double end_time = 0.0;      ///< [s]
+  double gravity = 9.8;       ///< [m/s²], downwards
+  double tilt_deg = 0.0;      ///< turns gravity so that material flows towards +x: g (sin, −cos)
+  double gravity_ramp = 0.0;  ///< time over which gravity grows from 0 to what it is [s]
+  /// Height below which bodies are buoyant [m]; absent: all is dry (step/buoyancy.hpp)
+  std::optional<double> water_table;
+  double water_density = 1000.0;  ///< [kg/m³]
+  /// Whether the stresses of lithostatic bodies are corrected until they balance their weight
+  /// (step/equilibrium.hpp); absent: seeks_equilibrium()
+  std::optional<bool> equilibrium;
+  /// The final state of another run (Simulation::save_final_state()): the points of the bodies come
+  /// from there; empty: bodies are filled
+  std::string start_from;
 
   /// Box from the origin to this corner [m]; without an extent along z the scene is plane strain,
   /// per metre of depth
@@ -210,6 +221,13 @@ double point_spacing(const Scene& scene);
 /// enough to quieten what the grid cannot carry, long enough that what it carries loses less than
 /// in APIC at any stable step; docs/transfers.md has the measurements. HUGE_VAL without gravity.
 double default_relaxation_time(const Scene& scene);
+
+/// Whether an edge is in parts or lets material in.
+bool has_edges_in_parts(const Scene& scene);
+
+/// Whether the start is corrected to equilibrium: as `equilibrium` says or, where it says nothing,
+/// where all bodies are lithostatic and there are several, or polygons among them.
+bool seeks_equilibrium(const Scene& scene);
 
 /// Makes a body a disc: its origin and size become those of the square around it.
 void set_disc(Body& body, const Disc& disc);

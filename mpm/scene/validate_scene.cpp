@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "mpm/scene/fill.hpp"
 #include "mpm/scene/scene.hpp"
 
 namespace repose::mpm {
@@ -411,7 +412,7 @@ void check_discs(const Scene& scene) {
                                                  number(point_spacing(scene)) + " m apart");
     if (body.lithostatic && scene.dimensions() == 2)
       throw InputError(path_of(i, "initial.lithostatic"),
-                       "a disc has no level surface: only a box can be lithostatic");
+                       "a disc has no level surface: only a box or a polygon can be lithostatic");
     if (scene.dimensions() == 2) continue;
     const auto cuts = [&](std::size_t axis, double centre, const Wall& wall, const char* key) {
       if (body.size[axis] < 2.0 * disc.radius * (1.0 - lattice_tolerance) &&
@@ -652,9 +653,6 @@ void check_polygons(const Scene& scene) {
     check_polygon(*body.polygon, path_of(i, "corners"));
     if (scene.dimensions() == 3)
       throw InputError(path_of(i, "corners"), "a polygon is a body of the plane");
-    if (body.lithostatic)
-      throw InputError(path_of(i, "initial.lithostatic"),
-                       "only a box can be lithostatic: a polygon has no level surface");
   }
 }
 
@@ -725,6 +723,41 @@ void check_space(const Scene& scene) {
   }
 }
 
+void check_start(const Scene& scene) {
+  require(scene.gravity_ramp, not_negative, "scene.gravity_ramp", "gravity_ramp");
+  require(scene.water_density, positive, "scene.water_density", "water_density");
+  if (scene.bodies.empty()) throw InputError("body", "a scene needs at least one [[body]]");
+  if (scene.water_table) {
+    require(*scene.water_table, {}, "scene.water_table", "water_table");
+    if (scene.tilt_deg != 0.0)
+      throw InputError("scene.water_table", "a water table is level: it does not go with tilt_deg");
+  }
+  if (!scene.start_from.empty()) {
+    if (scene.equilibrium.value_or(false))
+      throw InputError("scene.start",
+                       "\"at_rest\" is for bodies that are lithostatic, not for what another run "
+                       "has left (start_from)");
+    return;
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (!scene.bodies[i].lithostatic) continue;
+    if (scene.gravity_ramp > 0.0)
+      throw InputError(path_of(i, "initial.lithostatic"),
+                       "a lithostatic body bears its whole weight from the start, which "
+                       "scene.gravity_ramp gives it little by little: leave out one of the two");
+  }
+  if (scene.equilibrium.value_or(false) && has_edges_in_parts(scene))
+    throw InputError("scene.start",
+                     "\"at_rest\" does not go with edges in parts and inflows yet: over an opening "
+                     "nothing rests");
+  if (scene.equilibrium.value_or(false) &&
+      std::none_of(scene.bodies.begin(), scene.bodies.end(),
+                   [](const Body& body) { return body.lithostatic; }))
+    throw InputError("scene.start",
+                     "\"at_rest\" corrects the stresses of bodies with initial = { lithostatic = "
+                     "true }, and there is none");
+}
+
 /// What the material says to the state at the base of a lithostatic body.
 InitialPoint lithostatic_base(const Scene& scene, const Body& body, const Material& material) {
   const InitialConditions& given = body.initial;
@@ -758,6 +791,12 @@ void check_law(const Scene& scene, std::size_t i) {
                      "contacts damp the elastic waves of a law that has them and a grain diameter "
                      "d: mu_i (form = \"elastoviscoplastic\") or critical_state_mu_i");
   try {
+    buoyant_share(scene, *material);
+  } catch (const InputError& error) {
+    throw InputError(path_of(i, error.key().c_str()), error.what());
+  }
+  if (!scene.start_from.empty()) return;
+  try {
     const InitialPoint start = body.lithostatic ? lithostatic_base(scene, body, *material)
                                                 : material->initial(body.initial);
     if (!(start.density > 0.0) || !std::isfinite(start.density))
@@ -778,11 +817,14 @@ void validate(const Scene& scene) {
   check_periodic(scene);
   check_parts(scene);
   check_terrain(scene);
-  check_geometry(scene);
-  check_discs(scene);
-  check_polygons(scene);
+  if (scene.start_from.empty()) {
+    check_geometry(scene);
+    check_discs(scene);
+    check_polygons(scene);
+    check_overlap(scene);
+  }
   check_surfaces(scene);
-  check_overlap(scene);
+  check_start(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) check_law(scene, i);
   for (std::size_t i = 0; i < scene.inflows.size(); ++i) check_inflow(scene, i);
   check_places(scene, scene.probes, "probe");

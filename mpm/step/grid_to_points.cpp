@@ -253,7 +253,7 @@ void Simulation::Impl<dim>::strain(PointsOf<dim>& points, std::size_t body, cons
     damp_contacts(points, range, batch, stress_before, batch.viscous);
   }
   hold_density(points, range, batch, motion.elastic, pressure_before, sums);
-  sum_up(points, range, batch, motion, sums);
+  sum_up(points, body, range, batch, motion, sums);
 }
 
 template <int dim>
@@ -300,7 +300,8 @@ void Simulation::Impl<dim>::hold_density(PointsOf<dim>& points, const SlotRange&
 }
 
 template <int dim>
-void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange& range,
+void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, std::size_t body,
+                                   const SlotRange& range,
                                    const typename PointsOf<dim>::Batch& batch,
                                    const MotionOf<dim>& motion, BlockSums& sums) const {
   using F = Layout<dim>;
@@ -343,6 +344,11 @@ void Simulation::Impl<dim>::sum_up(const PointsOf<dim>& points, const SlotRange&
     const auto fields = force_components(points);
     for (std::size_t i = 0; i < stress.size(); ++i) stress[i] = at(fields[i]);
     power = power + m * (dot(g, moving) - stress_power(L, stress, step, follows_rate) * inv_rho);
+    if (scene.water_table) {
+      const Pack borne =
+          select(at(F::x + 1) < Pack(*scene.water_table), Pack(buoyant_[body]), Pack(0.0));
+      power = power - m * borne * g[1] * moving[1];
+    }
     const Pack v2 = dot(moving, moving);
     speed2 = max_of(speed2, v2);
     const Pack c2 = Pack::load_aligned(batch.modulus + k) * inv_rho;

@@ -88,15 +88,15 @@ void Simulation::Impl<dim>::let_in() {
       });
       for (std::size_t s = 0; s < row.slots(); ++s) {
         const double m = row[F::mass][s];
-        double height = 0.0;  // above the origin, times g
-        for (std::size_t i = 0; i < dim; ++i) height -= gravity[i] * row[F::x + i][s];
+        const double height =
+            height_energy(inflow.body, [&](std::size_t i) { return row[F::x + i][s]; });
         const double kinetic = 0.5 * m * squared_speed(row, s);
         const double elastic = stored[s] * m / row[F::rho][s];
         ledger.inflow += kinetic + m * height + elastic;
         ledger.inflow_elastic += elastic;
         ledger.inflow_mass += m;
         ledger.kinetic += kinetic;
-        ledger.power += power_of(row, s, last_dt);
+        ledger.power += power_of(row, inflow.body, s, last_dt);
         for (std::size_t f = 0; f < row.fields; ++f) body.append(f, row[f][s]);
         body.id.push_back(row.id[s]);
       }

@@ -25,6 +25,7 @@ void Simulation::Impl<dim>::transfer_to_tile(std::size_t block) {
       if constexpr (extra == Extra::signal) square_signals(points, range, values.data());
       points_to_tile<Kernel, affine, has_extra>(points, range, grid.h(), tile_origin(pb),
                                                 values.data(), tile);
+      if (scene.water_table) buoyancy_to_tile<Kernel>(points, b, range, tile_origin(pb), tile);
       if constexpr (dim == 2) {
         if (prescribed.acceleration)
           prescribed_force_to_tile<Kernel>(points, range, tile_origin(pb), tile);
@@ -66,6 +67,38 @@ void Simulation::Impl<2>::prescribed_force_to_tile(const PointSet& points, const
   }
   prescribed.acceleration(tiles_time, start[0], start[1], a[0], a[1]);
   body_force_to_tile<Kernel>(points, range, a[0], a[1], grid.h(), origin, tile);
+}
+
+template <int dim>
+template <class Kernel>
+void Simulation::Impl<dim>::buoyancy_to_tile(const PointsOf<dim>& points, std::size_t body,
+                                             const SlotRange& range,
+                                             const std::array<int, Shape<dim>::axes>& origin,
+                                             TileOf<dim>& tile) const {
+  using F = Layout<dim>;
+  TileField<dim>& force = tile[Channels<dim>::force + 1];
+  const double inv_h = 1.0 / grid.h();
+  for (std::size_t s = range.begin; s < range.begin + range.count; ++s) {
+    const double share = buoyant(body, points[F::x + 1][s]);
+    if (share == 0.0) continue;
+    std::array<std::array<double, 4>, dim> w;
+    std::size_t place = 0;
+    for (std::size_t axis = dim; axis-- > 0;) {
+      const double xi = points[F::x + axis][s] * inv_h;
+      const double anchor = Kernel::anchor(xi);
+      w[axis] = Kernel::weights(xi - anchor);
+      place = place * static_cast<std::size_t>(Shape<dim>::tile[axis]) +
+              static_cast<std::size_t>(anchor - 1.0 - origin[axis]);
+    }
+    const double borne = -share * gravity[1] * points[F::mass][s];
+    constexpr std::size_t planes = dim == 2 ? 1 : Kernel::rows;
+    constexpr std::size_t plane_nodes = Shape<dim>::tile[0] * Shape<dim>::tile[1];
+    for (std::size_t k = 0; k < planes; ++k)
+      for (std::size_t j = 0; j < Kernel::rows; ++j)
+        for (std::size_t i = 0; i < Kernel::rows; ++i)
+          force[place + k * plane_nodes + j * tile_stride + i] +=
+              borne * w[0][i] * w[1][j] * (dim == 3 ? w[dim - 1][k] : 1.0);
+  }
 }
 
 template <int dim>

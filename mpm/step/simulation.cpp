@@ -42,7 +42,13 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
       arena(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       threads(thread_count > 0 ? thread_count : tbb::info::default_concurrency()),
       prescribed(by_program) {
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+  if (!scene.start_from.empty()) {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      body_names.push_back(scene.bodies[b].name.empty() ? fmt::format("body[{}]", b)
+                                                        : scene.bodies[b].name);
+    start_from(scene.start_from);
+  }
+  for (std::size_t b = 0; scene.start_from.empty() && b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     try {
       bodies.push_back(fill<dim>(body, scene, next_id));
@@ -76,6 +82,8 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
   if (!scene.inflows.empty() && prescribed.acceleration)
     throw InputError("inflow", "material that comes in has no prescribed acceleration");
   walls = walls_now();
+  for (const PointsOf<dim>& points : bodies)
+    buoyant_.push_back(buoyant_share(scene, *points.material));
   for (PointsOf<dim>& points : bodies)
     if (prescribed.material) points.material = prescribed.material;
   if constexpr (dim == 2) {
@@ -91,6 +99,7 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     throw InputError("domain.size", "a prescribed motion is for plane strain only");
   }
   sort_if_needed();
+  seek_equilibrium();
   signals = initial_signals();
   first_dt = scene.dt ? *scene.dt : stable_step(signals, scene.courant, grid.h());
   last_dt = first_dt;
@@ -101,6 +110,7 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
   ledger.kinetic = e.kinetic;
   ledger.power = initial_power();
   highest_energy = energy_bound();
+  if (scene.gravity_ramp > 0.0) change_gravity(gravity_now());
   if (scene.terrain) maps.emplace(scene);
   observe_flow(0.0);
 }

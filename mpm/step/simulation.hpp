@@ -170,7 +170,8 @@ class Simulation {
 
   /// Goes on under another gravity, as Scene::gravity and tilt_deg [m/s²], [°]. The potential
   /// energy that this gives to the points counts as there from the start, so that the ledger still
-  /// closes; a relaxation time that followed from gravity stays what it was. Throws InputError.
+  /// closes; a relaxation time that followed from gravity stays what it was, and a ramp has ended.
+  /// Throws InputError.
   void set_gravity(double gravity, double tilt_deg);
   /// Goes on with another edge: "floor", "left", "right", "top", in space "near" and "far". Edges
   /// do not become periodic or cease to be. Throws InputError, with the edges there are.
@@ -188,7 +189,9 @@ class Simulation {
     /// all steps
     std::int64_t points_held, most_points_held, point_steps_held;
     std::int64_t newton_iterations, cg_iterations;  ///< of the implicit viscosity
-    double memory_MB;                               ///< of points and grid
+    /// What of the weight is out of balance at the start (step/equilibrium.hpp); 0: not sought
+    double out_of_balance;
+    double memory_MB;  ///< of points and grid
     int threads;
   };
   Counters counters() const;
@@ -196,6 +199,8 @@ class Simulation {
   /// Whole state to one HDF5 file and back; a resumed run gives the same bits as one never stopped.
   void save(const std::filesystem::path& file) const;
   void load(const std::filesystem::path& file);
+  /// What Scene::start_from takes the points from, as final_state.h5 in a folder.
+  void save_final_state(const std::filesystem::path& file) const;
 
  private:
   friend class MidCollapse;  ///< bench/: starts from points that another resolution has moved

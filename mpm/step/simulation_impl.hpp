@@ -10,6 +10,7 @@
 #include "mpm/boundary/rigid_contact.hpp"
 #include "mpm/boundary/wall_parts.hpp"
 #include "mpm/grid/grid.hpp"
+#include "mpm/step/equilibrium.hpp"
 #include "mpm/step/flow_maps.hpp"
 #include "mpm/step/implicit_viscosity.hpp"
 #include "mpm/step/ledger.hpp"
@@ -50,6 +51,8 @@ class Simulation::Impl {
   void close_ledger();               ///< kinetic energies before and after; throws NumericalFailure
 
   void observe_flow(double way);  ///< for the maps of a terrain
+  /// Corrects the stresses of a start at rest (equilibrium.hpp), if the scene asks for it.
+  void seek_equilibrium();
 
   SeriesRow diagnostics();
   Deposit deposit() const;
@@ -65,6 +68,30 @@ class Simulation::Impl {
   Counters counters() const;
   void save(const std::filesystem::path& file) const;
   void load(const std::filesystem::path& file);
+  void save_final_state(const std::filesystem::path& file) const;
+  /// Takes the points of all bodies from a result. Throws InputError.
+  void start_from(const std::filesystem::path& folder);
+  void require_room(const PointsOf<dim>& points, std::size_t body) const;
+  /// Gravity at this time: while it grows, 3x² − 2x³ of it at the share x of the ramp.
+  std::array<double, dim> gravity_now() const;
+  void follow_ramp();  ///< gravity of the time that a step has led to
+  /// Changes gravity; the potential energy that this gives to the points counts as there from the
+  /// start.
+  void change_gravity(const std::array<double, dim>& to);
+  double potential() const;
+  /// Of a point: its weight is m (g − what is buoyant of it)
+  double buoyant(std::size_t body, double y) const {
+    return scene.water_table && y < *scene.water_table ? buoyant_[body] : 0.0;
+  }
+  /// Potential energy of a point over its mass: −g·x, below the water table + s g·(0, y − y_w).
+  template <class At>
+  double height_energy(std::size_t body, At&& x) const {
+    double energy = 0.0;
+    for (std::size_t i = 0; i < dim; ++i) energy -= gravity[i] * x(i);
+    if (const double share = buoyant(body, x(1)); share != 0.0)
+      energy += share * gravity[1] * (x(1) - *scene.water_table);
+    return energy;
+  }
   /// Kinetic, elastic, potential sums over the points as they are, in a fixed order.
   struct Energies {
     double kinetic = 0.0, potential = 0.0, elastic = 0.0;
@@ -127,6 +154,7 @@ class Simulation::Impl {
   Signals signals;          ///< of the points
   double node_share = 1.0;  ///< largest signal of a node over that of a point (step_size.hpp)
   Ledger ledger;
+  Equilibrium equilibrium;
   double highest_energy = 0.0;   ///< what kinetic energy can never exceed [J/m]
   std::optional<FlowMaps> maps;  ///< of a scene with a terrain
   double initial_height = 0.0;   ///< H_0: top of the highest body [m]
@@ -179,7 +207,7 @@ class Simulation::Impl {
     return dim == 2 ? 0.2 / (h * h) : 0.09 / (h * h * h);
   }
   /// Adds a range's energies, work, power and signals after its update.
-  void sum_up(const PointsOf<dim>& points, const SlotRange& range,
+  void sum_up(const PointsOf<dim>& points, std::size_t body, const SlotRange& range,
               const typename PointsOf<dim>::Batch& batch, const MotionOf<dim>& motion,
               BlockSums& sums) const;
   /// The fields of the stress that gives the explicit forces, as in Sym.
@@ -207,9 +235,15 @@ class Simulation::Impl {
   }
   double initial_power() const;
   /// −Vσ:L + mg·v of one point after a step of length dt, as in sum_up() [W/m].
-  double power_of(const PointsOf<dim>& points, std::size_t slot, double dt) const;
+  double power_of(const PointsOf<dim>& points, std::size_t body, std::size_t slot, double dt) const;
   std::string describe(const PointsOf<dim>& points, std::size_t body, std::size_t slot) const;
 
+  /// What water bears of the points of a body below the water table, m s (−g) each.
+  template <class Kernel>
+  void buoyancy_to_tile(const PointsOf<dim>& points, std::size_t body, const SlotRange& range,
+                        const std::array<int, Shape<dim>::axes>& origin, TileOf<dim>& tile) const;
+
+  std::vector<double> buoyant_;  ///< s = ρ_w/ρ_s of each body (fill.hpp)
   std::vector<BlockSums> block_sums_;
   std::vector<NodeSums> node_sums_;  ///< per block of nodes; the last of a periodic edge
   WallEffect wall_effect_;

@@ -31,6 +31,7 @@ void Simulation::Impl<dim>::step(double stop_at) {
   time = tiles_time;
   ++steps;
   close_ledger();
+  follow_ramp();
   observe_flow(dt * signals.speed);
 }
 
@@ -158,6 +159,7 @@ void Simulation::Impl<dim>::measure_signals() {
   template void Simulation::Impl<DIM>::observe_flow(double);        \
   template void Simulation::Impl<DIM>::sort_if_needed();            \
   template double Simulation::Impl<DIM>::choose_step(double) const; \
+  template void Simulation::Impl<DIM>::update_grid(double);         \
   template Retention Simulation::Impl<DIM>::retention(double) const;
 REPOSE_STEP(2)
 REPOSE_STEP(3)

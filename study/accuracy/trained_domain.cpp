@@ -131,6 +131,9 @@ bool is_charted(const LawSpec& law) { return find_trained(find_law(law)) != null
 std::vector<std::string> beyond_training(const mpm::Scene& scene) {
   std::vector<std::string> reasons;
   if (scene.dimensions() != 2) reasons.emplace_back("a scene in space");
+  if (scene.water_table) reasons.emplace_back("a water table");
+  if (scene.gravity_ramp > 0.0) reasons.emplace_back("gravity that grows");
+  if (!scene.start_from.empty()) reasons.emplace_back("points of another run");
   if (scene.bodies.size() != 1) {
     reasons.push_back(fmt::format("{} bodies", scene.bodies.size()));
     return reasons;

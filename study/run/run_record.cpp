@@ -249,6 +249,7 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
     s["newton_iterations"] = counters.newton_iterations;
     s["cg_iterations"] = counters.cg_iterations;
   }
+  if (counters.out_of_balance > 0.0) s["out_of_balance"] = counters.out_of_balance;
   s["sessions"] = record.sessions;
   s["warnings"] = facts.warnings;
   s["input"] = to_json(facts.input);

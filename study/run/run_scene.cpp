@@ -390,6 +390,7 @@ io::ExitCode Run::finish() {
   tell_warnings();
   write_profile();
   if (scene_.terrain) write_terrain_maps(folder_, simulation_);
+  if (request_.file.final_state) simulation_.save_final_state(folder_.file("final_state.h5"));
   const bool drawn = write_picture();
   write_summary("done", "");
   folder_.seal();

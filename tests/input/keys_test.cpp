@@ -99,6 +99,10 @@ std::vector<std::string> scenes() {
             "1300.0\n",
             "[grid]\nh = 0.025\n[step]\nviscosity = \"implicit\"\nviscosity_tolerance = 1e-4\n"),
       cylinder + std::string(law) + "[grid]\nh = 0.05\n",
+      "[scene]\ngravity_ramp = 0.2\nwater_table = 0.1\nwater_density = 1030.0\nstart = "
+      "\"as_given\"\nstart_from = \"results/bed\"\n" +
+          cylinder.substr(cylinder.find('\n') + 1) + std::string(law) +
+          "[grid]\nh = 0.05\n[output]\nfinal_state = true\n",
       plane("shape = \"polygon\"\ncorners = [[0.1, 0.2], [0.3, 0.2], [0.2, 0.4]]\n", law,
             grid +
                 "[[surface]]\nname = \"ramp\"\nshape = \"half_space\"\npoint = [0.1, 0.1]\n"
@@ -240,7 +244,7 @@ TEST(KeyTable, AChangedSceneKeyChangesWhatIsWrittenOut) {
       "body.shape",     "step.transfer", "step.viscosity",
       "grid.h",         "body.radius",   "body.hole",
       "body.base",      "body.height",   "body.initial.lithostatic",
-      "body.initial.e", "surface.shape"};
+      "body.initial.e", "surface.shape", "scene.start"};
   std::set<std::string> changed;
   for (const std::string& text : scenes()) {
     const std::string before = resolved(text);

@@ -524,6 +524,47 @@ TEST(SpaceScenes, complain_of_what_is_of_the_other_dimension) {
   says(replaced(space, "[[body]]", "near = \"no_slip\"\n[[body]]"), "the wall cuts body[0]");
 }
 
+TEST(StartKeys, are_read_and_complain) {
+  const auto read = [](const std::string& text) {
+    InputFile file = InputFile::parse(text, "scene.toml");
+    return read_scene(file);
+  };
+  const auto complaint = [&](const std::string& text) {
+    try {
+      read(text);
+    } catch (const BadInput& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  const auto with = [&](const std::string& keys) {
+    return replaced(granular, "end_time", keys + "\nend_time");
+  };
+  const SceneFile file = read(
+      with("gravity_ramp = 0.5\nwater_table = 0.1\nwater_density = 1030\nstart = \"as_given\""));
+  EXPECT_EQ(file.scene.gravity_ramp, 0.5);
+  EXPECT_EQ(file.scene.water_table, 0.1);
+  EXPECT_EQ(file.scene.water_density, 1030.0);
+  EXPECT_EQ(file.scene.equilibrium, false);
+  EXPECT_FALSE(file.final_state);
+  EXPECT_FALSE(read(granular).scene.equilibrium.has_value());
+  EXPECT_TRUE(read(granular + "[output]\nfinal_state = true\n").final_state);
+  const SceneFile after = read(with("start_from = \"results/bed\""));
+  EXPECT_EQ(after.scene.start_from, "results/bed");
+  ASSERT_EQ(after.notes.size(), 1U);
+  EXPECT_NE(after.notes[0].find("bodies start as results/bed has left them"), std::string::npos);
+  const auto says = [&](const std::string& text, const std::string& words) {
+    const std::string found = complaint(text);
+    EXPECT_NE(found.find(words), std::string::npos) << found;
+  };
+  says(with("gravity_ramp = -1"), "gravity_ramp");
+  says(with("water_density = 1030"), "only a scene with a water_table has a water_density");
+  says(with("water_table = 0.1\ntilt_deg = 5"), "a water table is level");
+  says(with("start = \"at_rest\""), "and there is none");
+  says(with("start = \"at_rest\"\nstart_from = \"results/bed\""), "start_from");
+  says(with("start = \"resting\""), "\"as_given\", \"at_rest\"");
+}
+
 TEST(ShippedScenes, are_sound) {
   int count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(REPOSE_SOURCE_DIR "/data/scenes")) {
