@@ -98,6 +98,13 @@ std::vector<std::string> scenes() {
             "[body.law]\nname = \"newtonian\"\neta = 5.0\nK = 26e3\nalpha = 7.0\nrho_0 = "
             "1300.0\n",
             "[grid]\nh = 0.025\n[step]\nviscosity = \"implicit\"\nviscosity_tolerance = 1e-4\n"),
+      plane(box, law,
+            grid +
+                "[[inflow]]\nname = \"stream\"\nedge = \"top\"\nbody = \"block\"\nfrom = 0.5\nto = "
+                "0.7\n"
+                "speed = 0.5\nstarts = 0.1\nstops = 0.2\n[[inflow]]\nedge = \"floor\"\nrate = 3.0\n"
+                "[[probe]]\nname = \"a\"\nplace = [0.1, 0.2]\n"
+                "[[tracer]]\nname = \"b\"\nplace = [0.2, 0.2]\n"),
       cylinder + std::string(law) + "[grid]\nh = 0.05\n",
       plane("shape = \"polygon\"\ncorners = [[0.1, 0.2], [0.3, 0.2], [0.2, 0.4]]\n", law,
             grid +
@@ -240,7 +247,8 @@ TEST(KeyTable, AChangedSceneKeyChangesWhatIsWrittenOut) {
       "body.shape",     "step.transfer", "step.viscosity",
       "grid.h",         "body.radius",   "body.hole",
       "body.base",      "body.height",   "body.initial.lithostatic",
-      "body.initial.e", "surface.shape"};
+      "body.initial.e", "surface.shape", "body.name",
+      "inflow.body",    "inflow.edge"};
   std::set<std::string> changed;
   for (const std::string& text : scenes()) {
     const std::string before = resolved(text);
