@@ -274,7 +274,8 @@ void domain_keys(Keys& keys, mpm::Scene& scene) {
       {"walls", "-", "every other edge that is not given itself"},
       [&](TomlReader& table) {
         const Wall walls = read_wall(table, "walls", scene.left);
-        scene.left = scene.right = scene.near = scene.far = walls;
+        scene.left = scene.right = walls;
+        if (axes == 3) scene.near = scene.far = walls;
         // periodic walls are those across the flow; the top is then left as it is
         if (walls.kind != Wall::Kind::periodic) scene.top = walls;
       },
@@ -376,7 +377,8 @@ void inflow_keys(Keys& keys, mpm::Inflow& inflow, const mpm::Scene& scene) {
             body);
   stretch_keys(keys, inflow.from, inflow.to);
   keys.number({"speed", "m/s", "inwards; or a rate", positive}, inflow.speed);
-  keys.number({"rate", "kg/s", "mass per time, in the plane per metre of depth", positive},
+  keys.number({"rate", "kg/s", "mass per time, in the plane per metre of depth",
+               Range{0.0, 1e12, true, false}},
               inflow.rate);
   keys.number({"starts", "s", "when it begins", not_negative}, inflow.starts);
   std::optional<double> stops;

@@ -131,6 +131,8 @@ class PartsOfEdge {
     if (part.speed != 0.0 && part.kind != Wall::Kind::no_slip)
       throw InputError(key + ".speed",
                        "only a no-slip wall can drag the material along: leave out its speed");
+    if (axes_.size() == 1 && (std::isfinite(part.from[1]) || std::isfinite(part.to[1])))
+      throw InputError(key, "in the plane an edge has one direction: a number, not a pair");
     for (std::size_t k = 0; k < axes_.size(); ++k)
       if (!(part.from[k] < part.to[k]))
         throw InputError(key, "it would begin at " + number(part.from[k]) + " m and end at " +
@@ -583,6 +585,8 @@ void check_inflow(const Scene& scene, std::size_t i) {
   if (!(inflow.stops > inflow.starts))
     refuse("stops", "it would end at " + number(inflow.stops) + " s, before it begins at " +
                         number(inflow.starts) + " s");
+  if (scene.dimensions() == 2 && (std::isfinite(inflow.from[1]) || std::isfinite(inflow.to[1])))
+    refuse("from", "in the plane an edge has one direction: a number, not a pair");
   const Stretch stretch = stretch_of(scene, inflow);
   for (std::size_t k = 0; k + 1 < scene.dimensions(); ++k) {
     if (!(stretch.from[k] < stretch.to[k]))

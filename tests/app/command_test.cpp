@@ -439,7 +439,7 @@ TEST_F(CommandTest, AFullDiskIsToldAndLeavesNothingHalfWritten) {
   const std::string series = content_of(base_ / "full" / "series.csv");
   EXPECT_EQ(series.back(), '\n');
   for (const std::string& row : lines_of(series))
-    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 28) << row;
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','), 29) << row;
   EXPECT_FALSE(fs::exists(base_ / "full" / "summary.json")) << "nothing says that it is complete";
   for (const auto& entry : fs::directory_iterator(base_ / "full"))
     EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();

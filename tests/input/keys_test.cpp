@@ -98,11 +98,27 @@ std::vector<std::string> scenes() {
             "[body.law]\nname = \"newtonian\"\neta = 5.0\nK = 26e3\nalpha = 7.0\nrho_0 = "
             "1300.0\n",
             "[grid]\nh = 0.025\n[step]\nviscosity = \"implicit\"\nviscosity_tolerance = 1e-4\n"),
+      plane(box, law,
+            grid +
+                "[[inflow]]\nname = \"stream\"\nedge = \"top\"\nbody = \"block\"\nfrom = 0.5\nto = "
+                "0.7\n"
+                "speed = 0.5\nstarts = 0.1\nstops = 0.2\n[[inflow]]\nedge = \"floor\"\nrate = 3.0\n"
+                "[[probe]]\nname = \"a\"\nplace = [0.1, 0.2]\n"
+                "[[tracer]]\nname = \"b\"\nplace = [0.2, 0.2]\n"),
       cylinder + std::string(law) + "[grid]\nh = 0.05\n",
       "[scene]\ngravity_ramp = 0.2\nwater_table = 0.1\nwater_density = 1030.0\nstart = "
       "\"as_given\"\nstart_from = \"results/bed\"\n" +
           cylinder.substr(cylinder.find('\n') + 1) + std::string(law) +
           "[grid]\nh = 0.05\n[output]\nfinal_state = true\n",
+      "[scene]\nend_time = 0.5\n[terrain]\nground = \"valley.asc\"\nrelease = "
+      "\"valley_release.asc\"\nfriction = 0.3\nbase = 990.0\nleast_depth = 0.5\n[[body]]\nshape = "
+      "\"release\"\n" +
+          std::string(law) + "[grid]\nh = 10.0\n",
+      "[scene]\nend_time = 0.5\n[terrain]\nground = \"valley.asc\"\nkind = "
+      "\"slip\"\n[domain]\nsize "
+      "= [1200.0, 600.0, 600.0]\n[[body]]\norigin = [900.0, 400.0, 100.0]\nsize = [20.0, 20.0, "
+      "20.0]\n" +
+          std::string(law) + "[grid]\nh = 10.0\n",
       plane("shape = \"polygon\"\ncorners = [[0.1, 0.2], [0.3, 0.2], [0.2, 0.4]]\n", law,
             grid +
                 "[[surface]]\nname = \"ramp\"\nshape = \"half_space\"\npoint = [0.1, 0.1]\n"
@@ -240,11 +256,27 @@ TEST(KeyTable, AChangedSceneKeyChangesWhatIsWrittenOut) {
   const std::vector<KeyInfo> keys = keys_of(SchemaKind::scene);
   const auto infos = known(keys);
   // whose other words need other keys, or whose other numbers leave the lattice of points
-  const std::set<std::string> elsewhere{
-      "body.shape",     "step.transfer", "step.viscosity",
-      "grid.h",         "body.radius",   "body.hole",
-      "body.base",      "body.height",   "body.initial.lithostatic",
-      "body.initial.e", "surface.shape", "scene.start"};
+  const std::set<std::string> elsewhere{"body.shape",
+                                        "step.transfer",
+                                        "step.viscosity",
+                                        "grid.h",
+                                        "body.radius",
+                                        "body.hole",
+                                        "body.base",
+                                        "body.height",
+                                        "body.initial.lithostatic",
+                                        "body.initial.e",
+                                        "surface.shape",
+                                        "body.name",
+                                        "inflow.body",
+                                        "inflow.edge",
+                                        "scene.start",
+                                        "terrain.ground",
+                                        "terrain.release",
+                                        "terrain.friction",
+                                        "terrain.ground_content",
+                                        "terrain.release_content",
+                                        "terrain.friction_content"};
   std::set<std::string> changed;
   for (const std::string& text : scenes()) {
     const std::string before = resolved(text);

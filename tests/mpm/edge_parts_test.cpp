@@ -223,6 +223,10 @@ TEST(EdgeParts, WhatIsRefused) {
   EXPECT_EQ(floor({part(slip, 0.4, 0.41), part(open)}),
             "domain.floor: the closed part [0.4, 0.41] m is 0.4 cells wide; it must be at least 1 "
             "(h = 0.025 m)");
+  Wall::Part pair = part(open, 0.2, 0.5);
+  pair.to[1] = 0.3;
+  EXPECT_EQ(floor({pair, part(slip)}),
+            "domain.floor[0]: in the plane an edge has one direction: a number, not a pair");
   EXPECT_EQ(floor({}), "domain.floor: an edge in parts has at least one");
   Scene scene = silo(0.2);
   scene.transfer = Transfer::xpic;

@@ -204,6 +204,7 @@ TEST(Inflow, WhatIsRefused) {
   EXPECT_EQ(refused([](Scene& s) { s.inflows[0].body = 1; }), "inflow[0].body");
   EXPECT_EQ(refused([](Scene& s) { s.inflows[0].from[0] = 0.46; }), "inflow[0].from");
   EXPECT_EQ(refused([](Scene& s) { s.inflows[0].to[0] = 0.4; }), "inflow[0].from");
+  EXPECT_EQ(refused([](Scene& s) { s.inflows[0].to[1] = 0.4; }), "inflow[0].from");
   EXPECT_EQ(refused([](Scene& s) { s.inflows[0].stops = 0.0; }), "inflow[0].stops");
   EXPECT_EQ(refused([](Scene& s) { s.bodies[0].lithostatic = true; }), "inflow[0].body");
   EXPECT_EQ(refused([](Scene& s) { s.inflows.push_back(s.inflows[0]); }), "inflow[1].from");
