@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """The maps of data/scenes/valley.toml: a made-up valley that bends once and ends on a flat fan.
 
-python3 python/tools/valley.py [--cell 10] [--depth 8] [FOLDER], writes valley.asc (elevations, m) and
-valley_release.asc (vertical depths, m).
+python3 python/tools/valley.py [--cell 10] [--depth 8] [FOLDER], writes valley.asc (elevations, m),
+valley_release.asc (vertical depths, m) and valley_release.geojson (a region of one depth).
 """
 
 import argparse
@@ -46,6 +46,15 @@ def write(path, cell, value, digits):
     path.write_text("\n".join(lines) + "\n")
 
 
+def outline(depth):
+    """The same release as a region of one depth, with the same volume but for its corners."""
+    corners = [[WEST + 130.0 + 70.0 * math.cos(a), SOUTH + centre(130.0) + 50.0 * math.sin(a)]
+               for a in (2.0 * math.pi * k / 32 for k in range(32))]
+    ring = ", ".join(f"[{x:.1f}, {y:.1f}]" for x, y in corners + corners[:1])
+    return (f'{{"type": "Feature", "properties": {{"depth": {depth / 2:g}}}, '
+            f'"geometry": {{"type": "Polygon", "coordinates": [[{ring}]]}}}}\n')
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", nargs="?", default="data/scenes", type=pathlib.Path)
@@ -55,6 +64,7 @@ def main():
     write(given.folder / "valley.asc", given.cell, elevation, 2)
     write(given.folder / "valley_release.asc", given.cell,
           lambda x, y: release(x, y, given.depth), 2)
+    (given.folder / "valley_release.geojson").write_text(outline(given.depth))
 
 
 if __name__ == "__main__":

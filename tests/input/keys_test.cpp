@@ -111,7 +111,9 @@ std::vector<std::string> scenes() {
           cylinder.substr(cylinder.find('\n') + 1) + std::string(law) +
           "[grid]\nh = 0.05\n[output]\nfinal_state = true\n",
       "[scene]\nend_time = 0.5\n[terrain]\nground = \"valley.asc\"\nrelease = "
-      "\"valley_release.asc\"\nfriction = 0.3\nbase = 990.0\nleast_depth = 0.5\n[[body]]\nshape = "
+      "\"valley_release.geojson\"\nrelease_depth = 4.0\nfriction = \"valley_release.asc\"\n"
+      "ground_content = \"b4f5e16c1fb1b7a9\"\nrelease_content = \"c4c68dc1757848cf\"\n"
+      "friction_content = \"5df6a1e56bcf9d4e\"\nbase = 900.0\nleast_depth = 0.5\n[[body]]\nshape = "
       "\"release\"\n" +
           std::string(law) + "[grid]\nh = 10.0\n",
       "[scene]\nend_time = 0.5\n[terrain]\nground = \"valley.asc\"\nkind = "
