@@ -17,7 +17,9 @@ set(repose_public_headers
   io/csv_columns.hpp
   io/frame_reader.hpp
   io/frame_writer.hpp
+  io/geojson.hpp
   io/json.hpp
+  io/raster.hpp
   io/vtkhdf.hpp
   models/batch_law.hpp
   models/ill_posedness.hpp
@@ -33,9 +35,11 @@ set(repose_public_headers
   mpm/grid/numerical_failure.hpp
   mpm/output/history.hpp
   mpm/output/rest_pressure.hpp
+  mpm/scene/height_map.hpp
   mpm/scene/prescribed.hpp
   mpm/scene/scene.hpp
   mpm/scene/solid.hpp
+  mpm/scene/terrain.hpp
   mpm/step/simulation.hpp
   mpm/study/estimate.hpp
   mpm/study/ill_posed_points.hpp

@@ -283,6 +283,7 @@ TEST(TerrainTest, SameBitsForAnyThreadsAndAfterResuming) {
 // free.
 TEST(TerrainTest, TheLedgerClosesOverUnevenGround) {
   Simulation simulation(small_valley(), 1);
+  const auto scene_ground = simulation.scene().terrain->ground;
   const SeriesRow start = simulation.diagnostics();
   run_until(simulation, 2.0);
   const SeriesRow row = simulation.diagnostics();
@@ -293,6 +294,10 @@ TEST(TerrainTest, TheLedgerClosesOverUnevenGround) {
   EXPECT_LT(std::abs(row.energy_residual_J_per_m), 2.0 * row.dt_s / 2.0 * fall);
   EXPECT_NEAR(row.mass_kg_per_m + row.outflow_kg_per_m, start.mass_kg_per_m,
               1e-12 * start.mass_kg_per_m);
+  const auto points = simulation.point_fields();
+  for (std::size_t n = 0; n < points.mass.size(); ++n)
+    EXPECT_GE(points.position[3 * n + 1],
+              scene_ground->height(points.position[3 * n], points.position[3 * n + 2]) - 1e-12);
 }
 
 std::string complaint(const std::function<void(Scene&)>& spoil) {
