@@ -198,7 +198,7 @@ TEST_F(CommandTest, BadInputIsToldWithItsPlaceAndLeavesNothing) {
       "wrong.toml:15:1: output.colour must be one of \"mises\", \"density\"; got the string "
       "\"red\"\n"
       "wrong.toml:16:1: unknown key 'foo' in [output]; [output] takes checkpoint_interval, colour, "
-      "frame_interval, grid_frames, series_interval, shear_strain, stress\n");
+      "final_state, frame_interval, grid_frames, series_interval, shear_strain, stress\n");
   const Json event = Json::parse(wrong.out);
   EXPECT_EQ(event.at("event"), "error");
   EXPECT_EQ(event.at("exit"), 2);
