@@ -96,7 +96,11 @@ Lacks<dim> lacks(Surface::Contact contact, double friction, const Vector<dim>& g
 }
 
 /// How deep behind a surface points in front of it give mass to nodes, in cells: their stencils
-/// reach two cells along every axis.
+/// reach two cells along every axis, and half a one is for the surface's bending.
+double reach_along(const Position& normal) {
+  return 2.0 * (std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2])) + 0.5;
+}
+/// The most that it can be.
 template <int dim>
 const double reach = 2.0 * std::sqrt(static_cast<double>(dim)) + 0.5;
 
@@ -172,7 +176,7 @@ std::vector<typename RigidContact<dim>::Geometry> RigidContact<dim>::geometry_of
   for (int n = 0; n < Shape<dim>::nodes; ++n) {
     const Position x = position_of<dim>(node_index<dim>(nb, n), h);
     const Nearest at = surface.nearest_at(time, x);
-    if (at.distance > bound * h || at.distance < -reach<dim> * h) continue;
+    if (at.distance > bound * h || at.distance < -reach_along(at.normal) * h) continue;
     Geometry ghost;
     ghost.place = n;
     ghost.normal = along_axes<dim>(at.normal);
@@ -307,16 +311,21 @@ void RigidContact<dim>::cover(const Surface& surface, Layer& layer, const GridOf
 }
 
 template <int dim>
-bool RigidContact<dim>::is_above_lid(std::size_t surface, const std::array<double, dim>& x) const {
+bool RigidContact<dim>::is_above_lid([[maybe_unused]] const std::vector<Lid>& lids,
+                                     [[maybe_unused]] const std::array<double*, dim>& x,
+                                     [[maybe_unused]] std::size_t place) const {
   if constexpr (dim == 3) {
-    if (surface >= layers_.size() || layers_[surface].lids.empty()) return false;
-    const double i = std::floor(x[0] * per_h_), k = std::floor(x[2] * per_h_);
-    if (!(i >= 0.0 && i < cells_[0] && k >= 0.0 && k < cells_[2])) return false;
-    const auto& lid =
-        layers_[surface].lids[static_cast<std::size_t>(k) * static_cast<std::size_t>(cells_[0]) +
-                              static_cast<std::size_t>(i)];
-    return x[1] > lid.height + lid.slope_x * (x[0] - h_ * (i + 0.5)) +
-                      lid.slope_z * (x[2] - h_ * (k + 0.5));
+    // what lies below 0 wraps to the far end of the unsigned numbers
+    const double at_x = x[0][place], at_z = x[2][place];
+    const auto i = static_cast<std::int64_t>(at_x * per_h_ + 1.0) - 1;
+    const auto k = static_cast<std::int64_t>(at_z * per_h_ + 1.0) - 1;
+    const auto columns = static_cast<std::uint64_t>(cells_[0]);
+    if (static_cast<std::uint64_t>(i) >= columns ||
+        static_cast<std::uint64_t>(k) >= static_cast<std::uint64_t>(cells_[2]))
+      return false;
+    const Lid& lid = lids[static_cast<std::uint64_t>(k) * columns + static_cast<std::uint64_t>(i)];
+    return x[1][place] > lid.height + lid.slope_x * (at_x - h_ * (static_cast<double>(i) + 0.5)) +
+                             lid.slope_z * (at_z - h_ * (static_cast<double>(k) + 0.5));
   } else {
     return false;
   }
@@ -511,16 +520,20 @@ void RigidContact<dim>::transpose(GridOf<dim>& grid) const {
 }
 
 template <int dim>
-bool RigidContact<dim>::keep_out(std::array<double, dim>& x, double time, double hair) const {
-  bool moved = false;
+void RigidContact<dim>::keep_out(const std::array<double*, dim>& x, std::size_t count, double time,
+                                 double hair) const {
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const Surface& surface = surfaces_[k];
-    if (is_above_lid(k, x) || !surface.holds_at(time, position_of<dim>(x))) continue;
-    const Nearest at = surface.nearest_at(time, position_of<dim>(x));
-    for (std::size_t i = 0; i < dim; ++i) x[i] += (hair - at.distance) * at.normal[i];
-    moved = true;
+    const bool has_lids = k < layers_.size() && !layers_[k].lids.empty();
+    for (std::size_t n = 0; n < count; ++n) {
+      if (has_lids && is_above_lid(layers_[k].lids, x, n)) continue;
+      Position place{};
+      for (std::size_t i = 0; i < dim; ++i) place[i] = x[i][n];
+      if (!surface.holds_at(time, place)) continue;
+      const Nearest at = surface.nearest_at(time, place);
+      for (std::size_t i = 0; i < dim; ++i) x[i][n] += (hair - at.distance) * at.normal[i];
+    }
   }
-  return moved;
 }
 
 template class RigidContact<2>;

@@ -53,9 +53,10 @@ class RigidContact {
   /// Does to the grid's velocities after forces the transposed of what the last apply() did, of
   /// surfaces at rest without friction.
   void transpose(GridOf<dim>& grid) const;
-  /// Puts a place that lies behind a surface on its front side, a hair away. Returns whether it
-  /// did.
-  bool keep_out(std::array<double, dim>& x, double time, double hair) const;
+  /// Puts places that lie behind a surface on its front side, a hair away. x: of `count` places
+  /// along each axis.
+  void keep_out(const std::array<double*, dim>& x, std::size_t count, double time,
+                double hair) const;
 
  private:
   struct Donor {
@@ -87,14 +88,15 @@ class RigidContact {
     std::array<double, dim> odd, even;
     bool acts;
   };
+  /// A plane over a column of cells that nothing of the ground reaches: what is above it needs no
+  /// look at the map. NaN where no block of nodes has been yet.
+  struct Lid {
+    double height, slope_x, slope_z;  ///< at the column's middle
+  };
   struct Layer {  ///< of one surface
     std::vector<Ghost> ghosts;
     std::vector<Donor> donors;
-    /// Of ground, above each column of cells (x first) a plane that nothing of it reaches: what is
-    /// above needs no look at the map. NaN where no block of nodes has been yet.
-    struct Lid {
-      double height, slope_x, slope_z;  ///< at the column's middle
-    };
+    /// Of ground, above each column of cells, x first.
     std::vector<Lid> lids;
     /// By place of the block; of a surface at rest, for as long as the run lasts.
     std::map<std::array<std::int32_t, dim>, std::vector<Geometry>> geometry;
@@ -105,7 +107,8 @@ class RigidContact {
   static void build(const Surface& surface, Layer& layer, GridOf<dim>& grid, double time);
   static void cover(const Surface& surface, Layer& layer, const GridOf<dim>& grid,
                     const NodeBlockOf<dim>& block);
-  bool is_above_lid(std::size_t surface, const std::array<double, dim>& x) const;
+  bool is_above_lid(const std::vector<Lid>& lids, const std::array<double*, dim>& x,
+                    std::size_t place) const;
   WallEffect apply(const Surface& surface, Layer& layer, GridOf<dim>& grid, double& work) const;
   static void transpose(const Surface& surface, const Layer& layer, GridOf<dim>& grid);
 

@@ -148,13 +148,14 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
       double* const x = points.data(Layout<dim>::x + i) + s;
       (Pack::load_aligned(x) + step * Pack::load_aligned(motion.v[i] + k)).store_aligned(x);
     }
-    if (near_surface)  // the grid's velocity leads along it to second order in h
-      for (std::size_t lane = 0; lane < Pack::size; ++lane) {
-        std::array<double, dim> x;
-        for (std::size_t i = 0; i < dim; ++i) x[i] = points.data(Layout<dim>::x + i)[s + lane];
-        if (contact.keep_out(x, tiles_time, hair))
-          for (std::size_t i = 0; i < dim; ++i) points.data(Layout<dim>::x + i)[s + lane] = x[i];
-      }
+  }
+  if (near_surface) {  // the grid's velocity leads along it to second order in h
+    std::array<double*, dim> x;
+    for (std::size_t i = 0; i < dim; ++i) x[i] = points.data(Layout<dim>::x + i) + range.begin;
+    contact.keep_out(x, range.count, tiles_time, hair);
+  }
+  for (std::size_t k = 0; k < range.count; k += Pack::size) {
+    const std::size_t s = range.begin + k;
     auto near_wall = low < low;  // the edges come last: a surface may push a point beyond them
     for (std::size_t i = 0; i < dim; ++i) {
       const Pack x = Pack::load_aligned(points.data(Layout<dim>::x + i) + s);
