@@ -343,8 +343,7 @@ std::vector<mpm::Polygon> outlines_of(const mpm::Body& body, double z) {
 
 std::string name_of(const mpm::Scene& scene, std::size_t body) {
   const mpm::Body& of = scene.bodies[body];
-  return fmt::format("{} ({})", of.name.empty() ? fmt::format("body[{}]", body) : of.name,
-                     of.law.name);
+  return fmt::format("{} ({})", of.name, of.law.name);
 }
 
 Colour colour_of_body(std::size_t body) {

@@ -45,7 +45,7 @@ std::vector<EdgeStretch> edge_stretches(const mpm::Scene& scene, double z);
 /// What of a body a section at z cuts, as the scene gives it: rigid surfaces aside.
 std::vector<mpm::Polygon> outlines_of(const mpm::Body& body, double z);
 
-/// "sand (mu_i)"; body[0] where it has no name.
+/// A body with its law: "sand (mu_i)".
 std::string name_of(const mpm::Scene& scene, std::size_t body);
 /// The colour of a body in pictures where these are told apart.
 Colour colour_of_body(std::size_t body);
