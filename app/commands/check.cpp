@@ -191,6 +191,9 @@ io::ExitCode check_file(const std::string& path, const CommonOptions& options, L
     input::require_kind(input, input::FileKind::scene, "check --picture");
     if (std::filesystem::is_directory(picture))
       throw io::IoError(picture, "--picture takes the name of a file, and this is a folder");
+    std::error_code none;  // of a scene that goes by its name there is no file here
+    if (std::filesystem::equivalent(path, picture, none))
+      throw io::IoError(picture, "--picture would take the place of the scene itself");
   }
   if (input::is_chart_set(input)) return check_charts(path, options);
   const input::FileKind kind = input::kind_of(input);

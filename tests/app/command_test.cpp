@@ -207,6 +207,10 @@ TEST_F(CommandTest, CheckDrawsNothingElse) {
   const Outcome folder = run({"check", "tiny.toml", "--picture", "folder.svg"});
   EXPECT_EQ(folder.exit, 4);
   EXPECT_EQ(folder.err, "folder.svg: --picture takes the name of a file, and this is a folder\n");
+  const Outcome itself =
+      run({"check", "tiny.toml", "--picture", "../" + base_.filename().string() + "/tiny.toml"});
+  EXPECT_EQ(itself.exit, 4);
+  EXPECT_EQ(content_of(base_ / "tiny.toml"), tiny);
   const Outcome nowhere = run({"check", "tiny.toml", "--picture", "no/a.svg"});
   EXPECT_EQ(nowhere.exit, 4);
   EXPECT_EQ(nowhere.err.substr(0, 9), "no/a.svg:") << nowhere.err;
