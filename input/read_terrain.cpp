@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -13,6 +11,7 @@
 #include "input/toml_text.hpp"
 #include "io/atomic_file.hpp"
 #include "io/fingerprint.hpp"
+#include "io/seal.hpp"
 #include "io/table_error.hpp"
 
 namespace repose::input {
@@ -21,13 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using File = mpm::Terrain::File;
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  if (!in || fs::is_directory(file)) throw io::IoError(file, "cannot be read");
-  return std::move(bytes).str();
-}
+constexpr std::size_t most_bytes = 1'000'000'000;  // as of a table (io/raw_table.cpp)
 
 /// The bytes of a map that a key names, beside the scene's file or one of those that come with
 /// repose; its name becomes one that holds from anywhere. Nothing, reported, if there is none.
@@ -39,7 +32,7 @@ std::optional<std::string> read_map(TomlReader& table, std::string_view key, Fil
   std::string bytes;
   if (fs::exists(path)) {
     try {
-      bytes = bytes_of(path);
+      bytes = io::read_bytes(path, most_bytes);
     } catch (const io::IoError& error) {
       table.report(key, error.what());
       return {};
@@ -109,7 +102,7 @@ void ground_keys(Keys& keys, mpm::Terrain& terrain) {
     if (is_whole(*table, "ground", file, *map, -HUGE_VAL)) terrain.ground_map = std::move(*map);
   std::error_code ignored;
   const fs::path crs = fs::path(file.name).replace_extension(".prj");
-  if (fs::exists(crs, ignored)) terrain.crs = bytes_of(crs);
+  if (fs::exists(crs, ignored)) terrain.crs = io::read_bytes(crs, most_bytes);
 }
 
 void release_keys(Keys& keys, mpm::Terrain& terrain) {

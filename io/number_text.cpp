@@ -132,6 +132,14 @@ double two_digits(double x) {
   return std::strtod(text, nullptr);  // never throws, whatever the exponent
 }
 
+std::string grouped(double x) {
+  char text[400];  // any double
+  std::snprintf(text, sizeof text, "%.0f", x);
+  std::string digits = text;
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, " ");
+  return digits;
+}
+
 std::string_view trimmed(std::string_view text) {
   while (const std::size_t n = starts_with_one(text, blanks)) text.remove_prefix(n);
   const auto blank_at_end = [&] {

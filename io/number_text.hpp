@@ -18,6 +18,9 @@ std::string csv_cell(std::string text);
 /// To two significant digits, any double: "about" figures must not look exact.
 double two_digits(double x);
 
+/// A whole number with a space between thousands: 12 345 678.
+std::string grouped(double x);
+
 /// Without blanks, tabs and no-break spaces around it.
 std::string_view trimmed(std::string_view text);
 

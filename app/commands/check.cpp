@@ -1,6 +1,8 @@
 #include "app/commands/check.hpp"
 
 #include <cmath>
+#include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,20 +16,16 @@
 #include "input/read_scene.hpp"
 #include "input/read_stability.hpp"
 #include "input/shipped_input.hpp"
+#include "io/atomic_file.hpp"
 #include "io/json.hpp"
 #include "io/number_text.hpp"
 #include "io/progress.hpp"
 #include "mpm/study/estimate.hpp"
+#include "report/picture/scene_picture.hpp"
+#include "report/plot/gnuplot.hpp"
 
 namespace repose::app {
 namespace {
-
-/// 12 345 678
-std::string grouped(double x) {
-  std::string digits = fmt::format("{:.0f}", x);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, " ");
-  return digits;
-}
 
 /// 192 x 90
 std::string cells_of(const mpm::Scene& scene) {
@@ -42,7 +40,19 @@ void tell(const std::vector<std::string>& warnings, const CommonOptions& options
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 }
 
-io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options, Looks looks) {
+void draw(const mpm::Scene& scene, const mpm::Estimate& estimate, int threads,
+          const std::filesystem::path& path) {
+  std::optional<mpm::Simulation> start;
+  if (estimate.measured) start.emplace(scene, threads);
+  try {
+    report::scene_picture(scene, estimate, start ? &*start : nullptr).render_svg(path);
+  } catch (const report::PlotError& error) {
+    throw io::IoError(path, error.what());  // what was asked for cannot be written
+  }
+}
+
+io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options, Looks looks,
+                         const std::string& picture) {
   const input::SceneFile file = input::read_scene(input);
   const mpm::Scene& scene = file.scene;
   mpm::Estimate estimate;
@@ -53,19 +63,21 @@ io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options, 
     input.report(error);
     input.throw_if_bad();
   }
+  if (!picture.empty()) draw(scene, estimate, options.threads, picture);
   std::vector<std::string> warnings = file.notes;
   warnings.insert(warnings.end(), estimate.warnings.begin(), estimate.warnings.end());
   if (options.json) {
-    const io::Json report{{"file", input.name()},
-                          {"kind", "scene"},
-                          {"name", scene.name},
-                          {"points", estimate.points},
-                          {"live_cells", estimate.live_cells},
-                          {"first_dt_s", estimate.first_dt_s},
-                          {"steps", estimate.steps},
-                          {"memory_MB", estimate.memory_MB},
-                          {"wall_s", estimate.seconds},
-                          {"warnings", warnings}};
+    io::Json report{{"file", input.name()},
+                    {"kind", "scene"},
+                    {"name", scene.name},
+                    {"points", estimate.points},
+                    {"live_cells", estimate.live_cells},
+                    {"first_dt_s", estimate.first_dt_s},
+                    {"steps", estimate.steps},
+                    {"memory_MB", estimate.memory_MB},
+                    {"wall_s", estimate.seconds},
+                    {"warnings", warnings}};
+    if (!picture.empty()) report["picture"] = picture;
     fmt::print("{}\n", report.dump());
     return io::ExitCode::done;
   }
@@ -78,12 +90,13 @@ io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options, 
         "  steps       about {} for {:g} s\n"
         "  memory      about {:.2g} MB\n"
         "  run time    about {}\n",
-        input.name(), scene.name, grouped(static_cast<double>(estimate.points)),
-        grouped(static_cast<double>(estimate.live_cells)), cells_of(scene), estimate.first_dt_s,
-        scene.dt ? ", fixed" : "", grouped(io::two_digits(estimate.steps)), scene.end_time,
+        input.name(), scene.name, io::grouped(static_cast<double>(estimate.points)),
+        io::grouped(static_cast<double>(estimate.live_cells)), cells_of(scene), estimate.first_dt_s,
+        scene.dt ? ", fixed" : "", io::grouped(io::two_digits(estimate.steps)), scene.end_time,
         estimate.memory_MB,
         io::duration_text(estimate.seconds < 10.0 ? io::two_digits(estimate.seconds)
                                                   : estimate.seconds));
+  if (!options.quiet && !picture.empty()) fmt::print("  picture     {}\n", picture);
   tell(warnings, options);
   return io::ExitCode::done;
 }
@@ -171,8 +184,17 @@ io::ExitCode check_charts(const std::string& path, const CommonOptions& options)
 
 }  // namespace
 
-io::ExitCode check_file(const std::string& path, const CommonOptions& options, Looks looks) {
+io::ExitCode check_file(const std::string& path, const CommonOptions& options, Looks looks,
+                        const std::string& picture) {
   input::InputFile input = input::open_input(path, options.sets);
+  if (!picture.empty()) {
+    input::require_kind(input, input::FileKind::scene, "check --picture");
+    if (std::filesystem::is_directory(picture))
+      throw io::IoError(picture, "--picture takes the name of a file, and this is a folder");
+    std::error_code none;  // of a scene that goes by its name there is no file here
+    if (std::filesystem::equivalent(path, picture, none))
+      throw io::IoError(picture, "--picture would take the place of the scene itself");
+  }
   if (input::is_chart_set(input)) return check_charts(path, options);
   const input::FileKind kind = input::kind_of(input);
   if (kind == input::FileKind::scene || kind == input::FileKind::point_test) {
@@ -185,7 +207,7 @@ io::ExitCode check_file(const std::string& path, const CommonOptions& options, L
   }
   switch (kind) {
     case input::FileKind::scene:
-      return check_scene(input, options, looks);
+      return check_scene(input, options, looks, picture);
     case input::FileKind::point_test:
       return check_point_test(input, options);
     case input::FileKind::fit:
@@ -204,16 +226,21 @@ Command add_check(CLI::App& root) {
       "Examples:\n"
       "  repose check data/scenes/flat_mu_i.toml\n"
       "  repose check data/scenes/flat_mu_i.toml --set grid.h=0.003125\n"
+      "  repose check silo --picture silo.svg\n"
       "  repose check data/experiments/weald_clay_undrained.toml\n"
       "  repose check data/charts/all.toml");
   const auto options = std::make_shared<CommonOptions>();
   const auto file = std::make_shared<std::string>();
   verb.required("FILE.toml", *file,
                 "Input file, or the name of a scene or point test, as in flat_mu_i", "");
+  const auto picture = std::make_shared<std::string>();
+  verb.option("--picture", *picture, "Draw the scene as it starts into this file", "FILE.svg");
   add_set(verb, *options);
   add_threads(verb, *options);
   add_quiet(verb, *options);
-  return {verb.app(), options, [options, file] { return check_file(*file, *options); }};
+  return {verb.app(), options, [options, file, picture] {
+            return check_file(*file, *options, Looks::measure, *picture);
+          }};
 }
 
 }  // namespace repose::app

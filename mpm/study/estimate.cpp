@@ -131,6 +131,7 @@ Estimate estimate(const Scene& scene, int threads) {
   if (needs.points > most_points_measured || needs.box_cells > 100.0 * most_points_measured)
     return counted(scene, needs);
   Estimate e;
+  e.measured = true;
   Simulation simulation(scene, threads);
   e.points = simulation.point_count();
   e.live_cells = simulation.live_cells();

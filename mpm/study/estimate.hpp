@@ -11,6 +11,7 @@ namespace repose::mpm {
 
 /// What a run will take, before it runs.
 struct Estimate {
+  bool measured = false;  ///< on the scene as it is laid out; else counted from its numbers
   std::int64_t points = 0;
   std::int64_t live_cells = 0;  ///< at the start
   double first_dt_s = 0.0;

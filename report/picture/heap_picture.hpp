@@ -1,31 +1,24 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "input/read_scene.hpp"
 #include "mpm/step/simulation.hpp"
+#include "report/picture/scene_drawing.hpp"
 
 namespace repose::report {
 
-/// The state of a column collapse at one moment. Lengths in m; x_m, y_m and value have one entry
-/// for each material point.
+/// The state of a scene at one moment, in the plane of its section. Lengths in m; x_m, y_m and
+/// value have one entry for each material point.
 struct HeapPicture {
   std::string title, subtitle;
-  double width_m = 0.0, height_m = 0.0;  // of the box, whose lower left corner is the origin
+  mpm::Scene scene;
+  Section section;
   std::span<const double> x_m, y_m;
   std::span<const double> value;
-  std::string value_label;       // with its unit: "von Mises stress (kPa)"
-  double point_spacing_m = 0.0;  // between neighbours at the start: h / sqrt(points per cell)
-  /// Gravity is turned by this angle towards +x; drawn as an arrow. Absent: none is drawn.
-  std::optional<double> tilt_deg{};
-  std::vector<mpm::Polygon> surfaces;  // outlines of what is rigid
-  /// Where an edge of the box is open: two ends, in the plane of the picture.
-  std::vector<std::array<std::array<double, 2>, 2>> openings{};
+  std::string value_label;  // with its unit: "von Mises stress (kPa)"
 };
 
 /// Draws the points coloured by value in their box, to scale, as SVG. If a few extreme values would

@@ -13,7 +13,6 @@
 namespace repose::report {
 namespace {
 
-constexpr double largest_side_px = 760.0, other_side_px = 420.0;
 constexpr std::size_t most_shades = 250'000;  ///< cells of the shaded picture
 
 /// 1, 2 or 5 times a power of ten, at least x.
@@ -87,14 +86,58 @@ std::vector<io::Region> released(const mpm::Terrain& terrain) {
 
 }  // namespace
 
+double contour_step(const mpm::Terrain& terrain) {
+  const auto [lowest, highest] =
+      std::minmax_element(terrain.ground_map.values.begin(), terrain.ground_map.values.end());
+  return *highest > *lowest ? round_step((*highest - *lowest) / 25.0) : 0.0;
+}
+
+void size_for_plan(Figure& figure, const mpm::Terrain& terrain) {
+  constexpr double largest_side_px = 760.0, other_side_px = 420.0;
+  const bool wide = terrain.ground_map.width() >= terrain.ground_map.height();
+  figure.columns = wide ? 1 : 2;
+  figure.panel_width_px = wide ? largest_side_px : other_side_px;
+  figure.panel_height_px = wide ? other_side_px : largest_side_px;
+}
+
+Axes& add_plan(Figure& figure, const mpm::Terrain& terrain) {
+  const io::Raster& ground = terrain.ground_map;
+  Axes& axes = figure.add_axes();
+  axes.equal_aspect = true;
+  axes.legend = Legend::top_right;
+  const auto label = [](const char* towards, double from) {
+    return from == 0.0 ? fmt::format("{} (m)", towards)
+                       : fmt::format("{} − {:.10g} (m)", towards, from);
+  };
+  axes.x = {.label = label("easting", ground.west), .lower = 0.0, .upper = ground.width()};
+  axes.y = {.label = label("northing", ground.south), .lower = 0.0, .upper = ground.height()};
+  add_shade(axes, terrain);
+  Style contour;
+  contour.colour = Colour::grey;
+  contour.width_px = 0.6;
+  const double step = contour_step(terrain);
+  const auto [lowest, highest] = std::minmax_element(ground.values.begin(), ground.values.end());
+  for (double level = step * std::ceil(*lowest / step); step > 0.0 && level <= *highest;
+       level += step)
+    for (const io::LevelLine& line : io::level_lines(middles(ground), level))
+      add_ring(axes, "", ground, line.places, line.closed, contour);
+  return axes;
+}
+
+void draw_release(Axes& axes, const mpm::Terrain& terrain) {
+  Style edge;
+  edge.width_px = 1.6;
+  edge.colour = Colour::black;
+  add_regions(axes, "released", terrain.ground_map, released(terrain), edge, true);
+}
+
 void draw_terrain_picture(const mpm::Simulation& simulation, const std::filesystem::path& path) {
   const mpm::Scene& scene = simulation.scene();
   const mpm::Terrain& terrain = *scene.terrain;
   const io::Raster& ground = terrain.ground_map;
   const study::TerrainMaps maps = study::terrain_maps(simulation);
   const mpm::Simulation::PlanMaps plan = simulation.plan_maps();
-  const auto [lowest, highest] = std::minmax_element(ground.values.begin(), ground.values.end());
-  const double step = *highest > *lowest ? round_step((*highest - *lowest) / 25.0) : 0.0;
+  const double step = contour_step(terrain);
 
   Figure figure(fmt::format("{} at {:.4g} s", scene.name, simulation.time()),
                 step > 0.0
@@ -102,35 +145,15 @@ void draw_terrain_picture(const mpm::Simulation& simulation, const std::filesyst
                                   "on are shown",
                                   step, plan.least_depth)
                     : "");
-  const bool wide = ground.width() >= ground.height();
-  figure.columns = wide ? 1 : 2;
-  figure.panel_width_px = wide ? largest_side_px : other_side_px;
-  figure.panel_height_px = wide ? other_side_px : largest_side_px;
+  size_for_plan(figure, terrain);
 
   const std::vector<io::Region> reached = io::regions_above(
       {plan.columns, plan.rows, ground.west, ground.north(), plan.h, -plan.h, plan.depth_max_m},
       plan.least_depth);
-  const std::vector<io::Region> start = released(terrain);
   for (const bool last : {false, true}) {
     const io::Raster& depths = last ? maps.deposit_m : maps.largest_depth_m;
-    Axes& axes = figure.add_axes();
+    Axes& axes = add_plan(figure, terrain);
     axes.title = last ? "deposit" : "largest depth";
-    axes.equal_aspect = true;
-    axes.legend = Legend::top_right;
-    const auto label = [](const char* towards, double from) {
-      return from == 0.0 ? fmt::format("{} (m)", towards)
-                         : fmt::format("{} − {:.10g} (m)", towards, from);
-    };
-    axes.x = {.label = label("easting", ground.west), .lower = 0.0, .upper = ground.width()};
-    axes.y = {.label = label("northing", ground.south), .lower = 0.0, .upper = ground.height()};
-    add_shade(axes, terrain);
-    Style contour;
-    contour.colour = Colour::grey;
-    contour.width_px = 0.6;
-    for (double level = step * std::ceil(*lowest / step); step > 0.0 && level <= *highest;
-         level += step)
-      for (const io::LevelLine& line : io::level_lines(middles(ground), level))
-        add_ring(axes, "", ground, line.places, line.closed, contour);
     std::vector<double> xs, ys, values;
     for (std::size_t row = 0; row < depths.rows; ++row)
       for (std::size_t column = 0; column < depths.columns; ++column) {
@@ -146,8 +169,7 @@ void draw_terrain_picture(const mpm::Simulation& simulation, const std::filesyst
     edge.width_px = 1.6;
     edge.colour = Colour::vermillion;
     add_regions(axes, "reached", ground, reached, edge);
-    edge.colour = Colour::black;
-    add_regions(axes, "released", ground, start, edge, true);
+    draw_release(axes, terrain);
   }
   figure.render_svg(path);
 }

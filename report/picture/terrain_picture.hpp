@@ -3,8 +3,22 @@
 #include <filesystem>
 
 #include "mpm/step/simulation.hpp"
+#include "report/plot/figure.hpp"
 
 namespace repose::report {
+
+/// Between contours of the ground, a round figure [m]; 0 on level ground.
+double contour_step(const mpm::Terrain& terrain);
+
+/// Panels of one size, beside or below one another as the map is tall or wide.
+void size_for_plan(Figure& figure, const mpm::Terrain& terrain);
+
+/// A panel with the ground from above, shaded, with contours. Its axes start at the lower left
+/// corner of the map: a place (x, z) of the scene is at (x, ground_map.height() − z).
+Axes& add_plan(Figure& figure, const mpm::Terrain& terrain);
+
+/// The outline of what is released.
+void draw_release(Axes& axes, const mpm::Terrain& terrain);
 
 /// A flow over a terrain from above: largest depth and the deposit as it is, on shaded ground with
 /// contours and the outlines of what was released and reached; as SVG. Errors: PlotError, IoError.

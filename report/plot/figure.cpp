@@ -71,6 +71,11 @@ Axes& Axes::band(std::string name, std::span<const double> xs, std::span<const d
   return *this;
 }
 
+Axes& Axes::area(std::string name, std::span<const double> xs, std::span<const double> ys,
+                 Style style) {
+  return add(SeriesKind::area, std::move(name), xs, ys, style);
+}
+
 Axes& Axes::scatter(std::span<const double> xs, std::span<const double> ys,
                     std::span<const double> values, Axis colours, ScatterStyle style) {
   if (colours_) throw std::logic_error("figure: a panel has one colour scale only");
@@ -106,6 +111,11 @@ Axes& Axes::shade(std::span<const double> xs, std::span<const double> ys,
 
 Axes& Axes::arrow(Arrow arrow) {
   arrows_.push_back(std::move(arrow));
+  return *this;
+}
+
+Axes& Axes::label(Label label) {
+  labels_.push_back(std::move(label));
   return *this;
 }
 

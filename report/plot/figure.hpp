@@ -47,9 +47,10 @@ enum class Marker {
 
 struct Style {
   Colour colour = Colour::automatic;
-  double width_px = 1.8;           // of a line
-  std::optional<Marker> marker{};  // on a line: none unless given; for points: circle
-  double marker_px = 7.0;          // diameter
+  double width_px = 1.8;             // of a line
+  std::optional<Marker> marker{};    // on a line: none unless given; for points: circle
+  double marker_px = 7.0;            // diameter
+  std::optional<double> diameter{};  // of points: as a length on the x-axis instead
 };
 
 /// How large a point of a scatter is drawn: in pixels, or as a length on the x-axis.
@@ -58,7 +59,7 @@ struct ScatterStyle {
   std::optional<double> diameter{};
 };
 
-enum class SeriesKind { line, dashed, points, band, scatter, shade };
+enum class SeriesKind { line, dashed, points, band, area, scatter, shade };
 
 /// One series as it is kept by Axes; the last two are empty where the kind has no use for them.
 struct Series {
@@ -74,11 +75,17 @@ struct Arrow {
   std::string label;  // beside its tail
 };
 
-/// One panel. Series are drawn in the order given, shades and then bands before all
-/// others. A name that is empty
-/// keeps a series out of the legend. Lines break where a value is not finite, or not positive on a
-/// logarithmic axis, and points are left out; the figure's subtitle then says how many.
-/// Every adder throws std::invalid_argument if its arrays differ in length.
+/// A text beside a place: on its right, on its left where that is near the right end of the panel.
+struct Label {
+  double x = 0.0, y = 0.0;
+  std::string text;
+};
+
+/// One panel. Series are drawn in the order given, shades and then bands and areas before all
+/// others, arrows and labels upon them. A name that is empty keeps a series out of the legend.
+/// Lines break where a value is not finite, or not positive on a logarithmic axis, and points are
+/// left out; the figure's subtitle then says how many. Every adder throws std::invalid_argument if
+/// its arrays differ in length.
 class Axes {
  public:
   std::string title;
@@ -95,6 +102,9 @@ class Axes {
   /// A tinted area between two curves over the same xs.
   Axes& band(std::string name, std::span<const double> xs, std::span<const double> lower,
              std::span<const double> upper, Style style = {});
+  /// What a closed curve surrounds, tinted.
+  Axes& area(std::string name, std::span<const double> xs, std::span<const double> ys,
+             Style style = {});
   /// Points coloured by value (viridis) with a colour bar. One per panel: a second throws
   /// std::logic_error. Points without a finite value are drawn as crosses and counted in the
   /// legend.
@@ -105,9 +115,11 @@ class Axes {
   Axes& shade(std::span<const double> xs, std::span<const double> ys,
               std::span<const double> greys);
   Axes& arrow(Arrow arrow);
+  Axes& label(Label label);
 
   const std::vector<Series>& series() const { return series_; }
   const std::vector<Arrow>& arrows() const { return arrows_; }
+  const std::vector<Label>& labels() const { return labels_; }
   const std::optional<Axis>& colours() const { return colours_; }
 
  private:
@@ -116,6 +128,7 @@ class Axes {
 
   std::vector<Series> series_;
   std::vector<Arrow> arrows_;
+  std::vector<Label> labels_;
   std::optional<Axis> colours_;
 };
 

@@ -224,18 +224,33 @@ void write_label(std::string& out, const std::string& text, Spot middle, bool up
                      screen.at(middle.x, middle.y), upright ? "rotate by 90" : "norotate", ink);
 }
 
+/// Of a marker, whose size is given in pixels or as a length on the x-axis.
+double diameter_px(const Series& series, double px, const std::optional<double>& length,
+                   const PanelView& panel) {
+  if (!length && series.kind != SeriesKind::scatter) return px;
+  const double diameter =
+      length ? *length * panel.area.width / (panel.x.upper - panel.x.lower) : px;
+  // Fewer points, each covering more: the cloud keeps its density on paper.
+  return diameter * std::sqrt(std::max(1.0, static_cast<double>(series.x.size()) /
+                                                static_cast<double>(Figure::point_limit)));
+}
+
 /// A line of one point is drawn as that point.
 std::string drawn_as(const Series& series, const PanelView& panel, std::string_view colour,
                      bool one_point) {
   const Style& style = series.style;
   const auto markers = [&](Marker otherwise) {
     return fmt::format("pt {} ps {:.3f}", point_type(style.marker.value_or(otherwise)),
-                       point_size(style.marker_px));
+                       point_size(diameter_px(series, style.marker_px, style.diameter, panel)));
   };
   switch (series.kind) {
     case SeriesKind::band:
       return fmt::format(
           "using 1:2:3 with filledcurves fs transparent solid 0.22 noborder fc rgb '{}'", colour);
+    case SeriesKind::area:
+      return fmt::format(
+          "using 1:2 with filledcurves closed fs transparent solid 0.22 noborder fc rgb '{}'",
+          colour);
     case SeriesKind::points:
       return fmt::format("using 1:2 with points {} lc rgb '{}'", markers(Marker::circle), colour);
     case SeriesKind::scatter:
@@ -253,16 +268,24 @@ std::string drawn_as(const Series& series, const PanelView& panel, std::string_v
                  : "using 1:2 with lines " + line;
     }
   }
-  double diameter = series.scatter_style.marker_px;
-  if (series.scatter_style.diameter)
-    diameter = *series.scatter_style.diameter * panel.area.width / (panel.x.upper - panel.x.lower);
-  // Fewer points, each covering more: the cloud keeps its density on paper.
-  if (series.x.size() > Figure::point_limit)
-    diameter *=
-        std::sqrt(static_cast<double>(series.x.size()) / static_cast<double>(Figure::point_limit));
-  return fmt::format("using 1:2:3 with points pt 7 ps {:.3f} lc palette", point_size(diameter));
+  const ScatterStyle& cloud = series.scatter_style;
+  return fmt::format("using 1:2:3 with points pt 7 ps {:.3f} lc palette",
+                     point_size(diameter_px(series, cloud.marker_px, cloud.diameter, panel)));
 }
 
+/// Small dots have a sample in the legend that shows their colour.
+std::string legend_sample(const Series& series, const PanelView& panel, std::string_view colour) {
+  constexpr double least = 7.0;
+  const Style& style = series.style;
+  if (series.kind != SeriesKind::points || !style.diameter ||
+      diameter_px(series, style.marker_px, style.diameter, panel) >= least)
+    return "";
+  return fmt::format("NaN with points pt {} ps {:.3f} lc rgb '{}' title {}, ",
+                     point_type(style.marker.value_or(Marker::circle)), point_size(least), colour,
+                     gnuplot_text(series.name));
+}
+
+/// Arrows and the labels at places.
 void write_arrows(std::string& out, const Axes& axes, const PanelView& panel) {
   for (const Arrow& arrow : axes.arrows()) {
     const std::string from_x = number(handed(arrow.from_x, panel.x)),
@@ -276,6 +299,14 @@ void write_arrows(std::string& out, const Axes& axes, const PanelView& panel) {
     out += fmt::format(
         "set label {} at {}, {} right offset character -0.8,-0.3 front textcolor rgb '{}'\n",
         gnuplot_text(arrow.label), from_x, from_y, ink);
+  }
+  constexpr double near_the_end = 0.75;
+  for (const Label& label : axes.labels()) {
+    const bool left = panel.x.fraction(label.x) > near_the_end;
+    out += fmt::format(
+        "set label {} at {}, {} {} offset character {},0 front boxed textcolor rgb '{}'\n",
+        gnuplot_text(label.text), number(handed(label.x, panel.x)),
+        number(handed(label.y, panel.y)), left ? "right" : "left", left ? -1.2 : 1.2, ink);
   }
 }
 
@@ -310,12 +341,15 @@ void write_panel(std::string& out, const Axes& axes, const PanelView& panel,
     const Colour colour = uses_cycle ? cycle_colour(automatic++) : series.style.colour;
     if (blocks[i].drawn == 0) continue;
     out += fmt::format("$d{} << END_OF_DATA\n{}END_OF_DATA\n", i, blocks[i].text);
-    std::string& layer = layers[series.kind == SeriesKind::shade  ? 0
-                                : series.kind == SeriesKind::band ? 1
-                                                                  : 2];
-    layer +=
-        fmt::format("$d{} {} {}, ", i, drawn_as(series, panel, hex(colour), blocks[i].drawn == 1),
-                    series.name.empty() ? "notitle" : "title " + gnuplot_text(series.name));
+    std::string& layer =
+        layers[series.kind == SeriesKind::shade                                     ? 0
+               : series.kind == SeriesKind::band || series.kind == SeriesKind::area ? 1
+                                                                                    : 2];
+    const std::string sample = series.name.empty() ? "" : legend_sample(series, panel, hex(colour));
+    layer += fmt::format(
+        "$d{} {} {}, {}", i, drawn_as(series, panel, hex(colour), blocks[i].drawn == 1),
+        series.name.empty() || !sample.empty() ? "notitle" : "title " + gnuplot_text(series.name),
+        sample);
   }
   const std::string plots = layers[0] + layers[1] + layers[2];
   // A panel without any data still shows its axes.
@@ -334,6 +368,7 @@ void write_head(std::string& out, const FigureView& view) {
   out += ")\n";
   out += fmt::format("set border 3 lw 1 lc rgb '{}'\n", frame);
   out += fmt::format("set grid xtics ytics back lt 1 lw 1 lc rgb '{}'\n", grid);
+  out += "set style textbox opaque noborder margins 0.3,0.3 fillcolor rgb '#ffffff'\n";
   out += "set clip two\nset multiplot\n";
 }
 

@@ -164,6 +164,64 @@ TEST_F(CommandTest, Check) {
   EXPECT_EQ(fs::exists(base_ / "results"), false);
 }
 
+TEST_F(CommandTest, CheckDrawsTheScene) {
+  const auto files = [this] {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(base_))
+      names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
+  };
+  const Outcome text = run({"check", "tiny.toml", "--picture", "a.svg", "--threads", "1"});
+  EXPECT_EQ(text.exit, 0) << text.err;
+  EXPECT_NE(text.out.find("\n  picture     a.svg\n"), std::string::npos) << text.out;
+  const std::string svg = content_of(base_ / "a.svg");
+  EXPECT_NE(svg.find("tiny before its first step"), std::string::npos);
+  EXPECT_NE(svg.find("body0 (mu"), std::string::npos);
+  EXPECT_EQ(files(), (std::vector<std::string>{"a.svg", "err", "out", "tiny.toml"}));
+  // over an older file; the same picture with more threads
+  std::ofstream(base_ / "b.svg") << "old";
+  const Outcome json =
+      run({"check", "tiny.toml", "--picture", "b.svg", "--json", "--threads", "2"});
+  EXPECT_EQ(Json::parse(json.out).at("picture"), "b.svg");
+  EXPECT_EQ(content_of(base_ / "b.svg"), svg);
+  EXPECT_FALSE(Json::parse(run({"check", "tiny.toml", "--json"}).out).contains("picture"));
+}
+
+TEST_F(CommandTest, CheckDrawsNothingElse) {
+  const std::string data = REPOSE_SOURCE_DIR "/data/";
+  for (const auto& [file, what] :
+       {std::pair{"experiments/fit_kaolin.toml", "this is a fit ([fit])"},
+        {"experiments/weald_clay_undrained.toml", "this is a point test ([test])"}}) {
+    const Outcome refused = run({"check", data + file, "--picture", "a.svg"});
+    EXPECT_EQ(refused.exit, 2);
+    EXPECT_NE(refused.err.find(std::string(what) +
+                               ", and `repose check --picture` takes a scene ([scene])"),
+              std::string::npos)
+        << refused.err;
+  }
+  const Outcome charts = run({"check", data + "charts/all.toml", "--picture", "a.svg"});
+  EXPECT_EQ(charts.exit, 2);
+  EXPECT_NE(charts.err.find("[scene]"), std::string::npos) << charts.err;
+  fs::create_directory(base_ / "folder.svg");
+  const Outcome folder = run({"check", "tiny.toml", "--picture", "folder.svg"});
+  EXPECT_EQ(folder.exit, 4);
+  EXPECT_EQ(folder.err, "folder.svg: --picture takes the name of a file, and this is a folder\n");
+  const Outcome itself =
+      run({"check", "tiny.toml", "--picture", "../" + base_.filename().string() + "/tiny.toml"});
+  EXPECT_EQ(itself.exit, 4);
+  EXPECT_EQ(content_of(base_ / "tiny.toml"), tiny);
+  const Outcome nowhere = run({"check", "tiny.toml", "--picture", "no/a.svg"});
+  EXPECT_EQ(nowhere.exit, 4);
+  EXPECT_EQ(nowhere.err.substr(0, 9), "no/a.svg:") << nowhere.err;
+  EXPECT_FALSE(fs::exists(base_ / "a.svg"));
+  // without gnuplot: what was asked for is not there, and the exit code says so
+  const Outcome bare = finish(start({"check", "tiny.toml", "--picture", "a.svg"},
+                                    [] { ::setenv("PATH", "/nonexistent", 1); }));
+  EXPECT_EQ(bare.exit, 4);
+  EXPECT_NE(bare.err.find("gnuplot is not installed"), std::string::npos) << bare.err;
+}
+
 // Every scene of data/scenes goes by its name, wherever the program is started.
 TEST_F(CommandTest, ShippedScenesByName) {
   for (const auto& entry : fs::directory_iterator(scenes)) {

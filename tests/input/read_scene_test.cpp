@@ -95,6 +95,16 @@ TEST(ReadScene, fills_in_the_defaults) {
   EXPECT_FALSE(scene.bodies[0].law.values.contains("G")) << "4K follows K, so it stays absent";
 }
 
+TEST(ReadScene, a_map_that_never_ends_is_refused) {
+  for (const std::string key : {"ground", "release", "friction"}) {
+    const std::string said = problems(
+        replaced(granular, "[domain]", "[terrain]\n" + key + " = \"/dev/zero\"\n[domain]"));
+    EXPECT_NE(said.find("s.toml:4:1: /dev/zero: is longer than 32 MB, or never ends"),
+              std::string::npos)
+        << key << ": " << said;
+  }
+}
+
 TEST(ReadScene, writes_out_the_defaults_of_a_law) {
   const LawSpec law = scene_of(clay).scene.bodies[0].law;
   EXPECT_EQ(law.values.at("rho_p"), 2650.0);

@@ -384,20 +384,54 @@ TEST_F(FigureTest, BadInputIsRefused) {
 HeapPicture heap(const Values& x, const Values& y, const Values& value) {
   HeapPicture picture;
   picture.title = "Column collapse";
-  picture.width_m = 1.2;
-  picture.height_m = 0.56;
+  picture.scene.domain = {1.2, 0.56, 0.0};
+  picture.scene.h = 0.02;  // points 0.01 m apart
   picture.x_m = x;
   picture.y_m = y;
   picture.value = value;
   picture.value_label = "von Mises stress (kPa)";
-  picture.point_spacing_m = 0.01;
   return picture;
+}
+
+TEST_F(FigureTest, PointsMayHaveALengthForDiameter) {
+  Figure figure;
+  Axes& axes = figure.add_axes();
+  axes.x = {.label = "x", .lower = 0.0, .upper = 1.0};
+  Style style = unlike_the_cycle();
+  style.diameter = 0.01;
+  axes.points("dots", Values{0.25, 0.75}, Values{1.0, 1.0}, style);
+  const auto found = dots(figure.svg());
+  ASSERT_EQ(found.size(), 3u) << "two points and the sample of the legend";
+  std::vector<double> radii;
+  for (const Dot& dot : found) radii.push_back(dot.radius);
+  std::sort(radii.begin(), radii.end());
+  // a hundredth of the panel's 420 px across, and 7 px to be seen in the legend; gnuplot writes
+  // radii to 0.01 px
+  EXPECT_NEAR(radii[0], 0.5 * 0.01 * 420.0, 0.01);
+  EXPECT_NEAR(radii[1], 0.5 * 0.01 * 420.0, 0.01);
+  EXPECT_NEAR(radii[2], 0.5 * 7.0, 0.01);
+}
+
+TEST_F(FigureTest, LabelsStayInThePanel) {
+  Figure figure;
+  Axes& axes = figure.add_axes();
+  axes.x = {.label = "x", .lower = 0.0, .upper = 1.0};
+  axes.line("", Values{0.0, 1.0}, Values{0.0, 1.0});
+  axes.label({0.1, 0.5, "on its right"}).label({0.9, 0.5, "on its left"});
+  const std::string svg = figure.svg();
+  const auto anchor = [&](const std::string& text) {
+    const std::size_t at = svg.find(text), from = svg.rfind("text-anchor=\"", at) + 13;
+    return svg.substr(from, svg.find('"', from) - from);
+  };
+  ASSERT_TRUE(contains(svg, "on its right") && contains(svg, "on its left"));
+  EXPECT_EQ(anchor("on its right"), "start");
+  EXPECT_EQ(anchor("on its left"), "end");
 }
 
 TEST_F(HeapPictureTest, IsToScale) {
   const Values x{0.0, 1.2, 0.0, 1.2}, y{0.0, 0.0, 0.5, 0.5}, value{1, 2, 3, 4};
   HeapPicture picture = heap(x, y, value);
-  picture.tilt_deg = 21.0;
+  picture.scene.tilt_deg = 21.0;
   write_heap_picture(folder_ / "final.svg", picture);
   const std::string svg = content_of(folder_ / "final.svg");
   const auto found = dots(svg);
@@ -427,13 +461,12 @@ TEST_F(HeapPictureTest, AnyShapeOfBoxIsDrawn) {
   const Values x{0.1, 0.2}, y{0.1, 0.2}, value{1.0, 1.0};
   for (const auto& [width, height] : {std::pair{20.0, 0.5}, std::pair{0.3, 3.0}}) {
     HeapPicture picture = heap(x, y, value);
-    picture.width_m = width;
-    picture.height_m = height;
+    picture.scene.domain = {width, height, 0.0};
     write_heap_picture(folder_ / "final.svg", picture);
     EXPECT_EQ(dots(content_of(folder_ / "final.svg")).size(), 2u);
   }
   HeapPicture picture = heap(x, y, value);
-  picture.height_m = 0.0;
+  picture.scene.domain[1] = 0.0;
   EXPECT_THROW(write_heap_picture(folder_ / "bad.svg", picture), std::invalid_argument);
   picture = heap(x, y, Values{});
   EXPECT_THROW(write_heap_picture(folder_ / "bad.svg", picture), std::invalid_argument);
