@@ -57,7 +57,8 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
     }
     next_id += static_cast<std::int64_t>(bodies.back().count);
     body_names.push_back(body.name.empty() ? fmt::format("body[{}]", b) : body.name);
-    initial_height = std::max(initial_height, body.origin[1] + body.size[1]);
+    initial_height = std::max(initial_height, body.release ? scene.terrain->release->deepest()
+                                                           : body.origin[1] + body.size[1]);
   }
   for (const Probe& tracer : scene.tracers) {
     double nearest = HUGE_VAL;

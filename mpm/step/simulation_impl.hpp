@@ -157,7 +157,7 @@ class Simulation::Impl {
   Equilibrium equilibrium;
   double highest_energy = 0.0;   ///< what kinetic energy can never exceed [J/m]
   std::optional<FlowMaps> maps;  ///< of a scene with a terrain
-  double initial_height = 0.0;   ///< H_0: top of the highest body [m]
+  double initial_height = 0.0;   ///< H_0: top of the highest body, depth of a release [m]
 
  private:
   struct BlockSums {
