@@ -300,6 +300,22 @@ TEST(TerrainTest, TheLedgerClosesOverUnevenGround) {
               scene_ground->height(points.position[3 * n], points.position[3 * n + 2]) - 1e-12);
 }
 
+// What is thrown at the ground, at more than its speed of sound, stays above it.
+TEST(TerrainTest, NothingGetsBelowTheGround) {
+  Scene scene = small_valley();
+  scene.bodies[0].velocity = {10.0, -60.0, 5.0};
+  Simulation simulation(scene, 1);
+  for (int k = 0; k < 40; ++k) {
+    simulation.step(HUGE_VAL);
+    const auto points = simulation.point_fields();
+    for (std::size_t n = 0; n < points.mass.size(); ++n)
+      ASSERT_GE(
+          points.position[3 * n + 1],
+          scene.terrain->ground->height(points.position[3 * n], points.position[3 * n + 2]) - 1e-12)
+          << "step " << k;
+  }
+}
+
 std::string complaint(const std::function<void(Scene&)>& spoil) {
   Scene scene = small_valley();
   spoil(scene);
