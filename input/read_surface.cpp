@@ -67,28 +67,34 @@ void shape_keys(mpm::Solid& solid, bool is_it, Read&& read) {
   if (is_it) solid.shape = std::move(shape);
 }
 
-/// No slip if nothing is said; a coefficient of friction is a contact of its own.
+/// A coefficient of friction is a contact of its own.
 void contact_keys(Keys& keys, mpm::Surface& surface) {
-  using Contact = mpm::Surface::Contact;
-  static constexpr std::array<std::string_view, 2> kinds{"no_slip", "slip"};
-  TomlReader* const table = keys.reader();
   std::optional<double> friction;
-  if (surface.contact == Contact::friction) friction = surface.friction;
+  if (surface.contact == mpm::Surface::Contact::friction) friction = surface.friction;
   keys.number({"friction", "-", "Coulomb coefficient of a contact that may part; or a kind",
                Range{0.0, 1e3, false, false}},
               friction);
-  if (table != nullptr && table->has("friction") && table->has("kind"))
-    table->report("kind",
-                  "give either kind or friction: a surface with friction slips where it must");
-  auto kind = friction ? Contact::no_slip : surface.contact;
-  keys.choice(Key{"kind", "-", "of contact without friction, which does not part"}.only_if(
-                  !friction || table != nullptr, ""),
-              kinds, kind);
-  surface.contact = friction ? Contact::friction : kind;
+  contact_kind_key(keys, friction.has_value(), "a surface", surface.contact);
   surface.friction = friction.value_or(0.0);
 }
 
 }  // namespace
+
+void contact_kind_key(Keys& keys, bool rubs, std::string_view what,
+                      mpm::Surface::Contact& contact) {
+  using Contact = mpm::Surface::Contact;
+  static constexpr std::array<std::string_view, 2> kinds{"no_slip", "slip"};
+  TomlReader* const table = keys.reader();
+  if (table != nullptr && table->has("friction") && table->has("kind"))
+    table->report("kind", fmt::format("give either kind or friction: {} with friction slips where "
+                                      "it must",
+                                      what));
+  auto kind = rubs ? Contact::no_slip : contact;
+  keys.choice(Key{"kind", "-", "of contact without friction, which does not part"}.only_if(
+                  !rubs || table != nullptr, ""),
+              kinds, kind);
+  contact = rubs ? Contact::friction : kind;
+}
 
 void surface_keys(Keys& keys, mpm::Surface& surface, std::size_t axes) {
   static constexpr std::array<std::string_view, 3> shapes{"half_space", "ball", "polygon"};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "input/key_info.hpp"
+#include "input/read_surface.hpp"
 #include "input/shipped_input.hpp"
 #include "input/toml_reader.hpp"
 #include "input/toml_text.hpp"
@@ -169,7 +170,6 @@ void read_friction(TomlReader& table, mpm::Terrain& terrain) {
 
 void contact_keys(Keys& keys, mpm::Terrain& terrain) {
   using Contact = mpm::Surface::Contact;
-  static constexpr std::array<std::string_view, 2> kinds{"no_slip", "slip"};
   static const KeyInfo info = [] {
     KeyInfo any, coefficient, map;
     any.kind = ValueKind::any_of;
@@ -179,7 +179,7 @@ void contact_keys(Keys& keys, mpm::Terrain& terrain) {
     return any;
   }();
   TomlReader* const table = keys.reader();
-  bool rubs = terrain.contact == Contact::friction;
+  const bool rubs = terrain.contact == Contact::friction;
   keys.text(
       Key{"friction_content", "-", "fingerprint of the map's bytes, written by repose"}.only_if(
           table != nullptr || keys.describes() || terrain.friction_raster.has_value(), ""),
@@ -195,15 +195,7 @@ void contact_keys(Keys& keys, mpm::Terrain& terrain) {
                                        : toml_number(terrain.friction);
       },
       info);
-  rubs = terrain.contact == Contact::friction;
-  if (table != nullptr && rubs && table->has("kind"))
-    table->report("kind",
-                  "give either kind or friction: a ground with friction slips where it must");
-  auto kind = rubs ? Contact::no_slip : terrain.contact;
-  keys.choice(Key{"kind", "-", "of contact without friction, which does not part"}.only_if(
-                  !rubs || table != nullptr, ""),
-              kinds, kind);
-  if (!rubs) terrain.contact = kind;
+  contact_kind_key(keys, terrain.contact == Contact::friction, "a ground", terrain.contact);
 }
 
 }  // namespace
