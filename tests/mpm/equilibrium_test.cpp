@@ -422,7 +422,10 @@ TEST(Equilibrium, TransposesSurfacesAndEdges) {
   plane.solid.shape = HalfSpace{{0.0, 0.21, 0.0}, {0.3, 1.0, 0.1}};
   plane.contact = Surface::Contact::slip;
   ball.solid.shape = Ball{{0.3, 0.3, 0.3}, 0.11};
-  for (const std::vector<Surface>& surfaces : {std::vector<Surface>{}, {plane}, {plane, ball}}) {
+  Surface smooth = ball;  // a bend along which things slide
+  smooth.contact = Surface::Contact::slip;
+  for (const std::vector<Surface>& surfaces :
+       {std::vector<Surface>{}, {plane}, {plane, ball}, {smooth}, {plane, smooth}}) {
     expect_transposed<2>(surfaces);
     expect_transposed<3>(surfaces);
   }
