@@ -1,8 +1,12 @@
 #include "mpm/boundary/rigid_contact.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
+
+#include "mpm/grid/tile_exchange.hpp"
 
 namespace repose::mpm {
 namespace {
@@ -218,6 +222,10 @@ void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>&
   layer.ghosts.clear();
   layer.donors.clear();
   const double h = grid.h();
+  // the others bear no mass before the next sort
+  std::vector<std::bitset<Shape<dim>::nodes>> touched;
+  touched.reserve(grid.node_blocks.size());
+  for (const NodeBlockOf<dim>& nb : grid.node_blocks) touched.push_back(touched_nodes(grid, nb));
   std::unordered_map<std::int64_t, std::int32_t> known;
   const auto donor = [&](const typename GridOf<dim>::Index& index) -> std::int32_t {
     for (std::size_t i = 0; i < dim; ++i)  // beyond, no point of the box reaches
@@ -225,6 +233,7 @@ void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>&
     const typename GridOf<dim>::NodeRef at = grid.node(index);
     if (at.block == nullptr) return -1;
     const auto block = static_cast<std::int32_t>(at.block - grid.node_blocks.data());
+    if (!touched[static_cast<std::size_t>(block)][at.place]) return -1;
     const auto place = static_cast<std::int32_t>(at.place);
     const auto [found, is_new] =
         known.try_emplace(std::int64_t{block} * Shape<dim>::nodes + place, -1);
@@ -253,6 +262,7 @@ void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>&
       geometry = &found->second;
     }
     for (const Geometry& as_it_lies : *geometry) {
+      if (!touched[b][static_cast<std::size_t>(as_it_lies.place)]) continue;
       Ghost ghost{};
       ghost.block = static_cast<std::int32_t>(b);
       ghost.place = as_it_lies.place;
@@ -268,6 +278,7 @@ void RigidContact<dim>::build(const Surface& surface, Layer& layer, GridOf<dim>&
       layer.ghosts.push_back(ghost);
     }
   }
+  list_followers(layer);
 }
 
 /// The plane is that of the map's slope over a cell, raised by twice as much as the map is found to
@@ -331,43 +342,72 @@ bool RigidContact<dim>::is_above_lid([[maybe_unused]] const std::vector<Lid>& li
   }
 }
 
+/// Every donor's sums are its own, over its ghosts in their order: the same bits for any number of
+/// threads.
+template <int dim>
+void RigidContact<dim>::list_followers(Layer& layer) {
+  layer.first_follower.assign(layer.donors.size() + 1, 0);
+  const auto each = [&](auto&& f) {
+    for (std::size_t g = 0; g < layer.ghosts.size(); ++g)
+      for (std::size_t k = 0; k < layer.ghosts[g].donor.size(); ++k)
+        if (layer.ghosts[g].donor[k] >= 0)
+          f(g, k, static_cast<std::size_t>(layer.ghosts[g].donor[k]));
+  };
+  each([&](std::size_t, std::size_t, std::size_t donor) { ++layer.first_follower[donor + 1]; });
+  std::partial_sum(layer.first_follower.begin(), layer.first_follower.end(),
+                   layer.first_follower.begin());
+  layer.followers.resize(layer.first_follower.back());
+  std::vector<std::size_t> next(layer.first_follower.begin(), layer.first_follower.end() - 1);
+  each([&](std::size_t g, std::size_t k, std::size_t donor) {
+    layer.followers[next[donor]++] = {static_cast<std::int32_t>(g), static_cast<std::int32_t>(k)};
+  });
+}
+
 template <int dim>
 WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf<dim>& grid,
-                                    double& work) const {
+                                    tbb::task_arena& arena, double& work) {
   const auto block = [&](const auto& at) -> NodeBlockOf<dim>& {
     return grid.node_blocks[static_cast<std::size_t>(at.block)];
   };
   const auto mass = [&](const auto& at) {
     return block(at).mass[static_cast<std::size_t>(at.place)];
   };
-  const auto velocity = [&](const auto& at) { return read<dim>(block(at).v, at.place); };
   /// f(donor, weight) for the donors of a ghost that bear mass.
   const auto each_donor = [&](const Ghost& ghost, auto&& f) {
     for (std::size_t k = 0; k < ghost.donor.size(); ++k) {
       if (ghost.donor[k] < 0) continue;
-      Donor& donor = layer.donors[static_cast<std::size_t>(ghost.donor[k])];
+      const Donor& donor = layer.donors[static_cast<std::size_t>(ghost.donor[k])];
       if (donor.mass > 0.0) f(donor, ghost.weight[k] * ghost.per_borne);
     }
   };
-  for (Donor& donor : layer.donors) {
-    donor.mass = donor.odd_mass = donor.even_mass = mass(donor);
-    donor.odd = donor.even = {};
-  }
-  for (Ghost& ghost : layer.ghosts) {
+  constexpr std::size_t chunk = 256;
+  const auto chunks = [](std::size_t n) { return (n + chunk - 1) / chunk; };
+  /// f(item, chunk) for all, a chunk a thread.
+  const auto each = [&](auto& items, auto&& f) {
+    for_each_block(arena, chunks(items.size()), [&](std::size_t c) {
+      const std::size_t end = std::min(items.size(), (c + 1) * chunk);
+      for (std::size_t n = c * chunk; n < end; ++n) f(n, c);
+    });
+  };
+  each(layer.donors, [&](std::size_t n, std::size_t) {
+    Donor& donor = layer.donors[n];
+    donor.mass = mass(donor);
+    donor.relative = read<dim>(block(donor).v, donor.place);
+    add(donor.relative, -1.0, donor.velocity);
+  });
+  each(layer.ghosts, [&](std::size_t n, std::size_t) {
+    Ghost& ghost = layer.ghosts[n];
     ghost.mass = mass(ghost);
     ghost.acts = ghost.mass > 0.0;
-    if (!ghost.acts) continue;
+    if (!ghost.acts) return;
     ghost.per_borne = 1.0;
     double borne = 0.0;
     each_donor(ghost, [&](const Donor&, double w) { borne += w; });
-    Vector<dim> own = velocity(ghost), front{};
+    Vector<dim> own = read<dim>(block(ghost).v, ghost.place), front{};
     add(own, -1.0, ghost.velocity);
     if (borne > 1e-9) {
       ghost.per_borne = 1.0 / borne;
-      each_donor(ghost, [&](const Donor& donor, double w) {
-        add(front, w, velocity(donor));
-        add(front, -w, donor.velocity);
-      });
+      each_donor(ghost, [&](const Donor& donor, double w) { add(front, w, donor.relative); });
     } else {  // nothing in front of it that it could follow
       ghost.per_borne = 0.0;
       front = own;
@@ -379,35 +419,49 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
     const Lacks<dim> of =
         lacks<dim>(surface.contact, ghost.friction, own, front, even, s, ghost.normal);
     ghost.acts = !of.parts;
-    if (!ghost.acts) continue;
     ghost.odd = of.odd;
     ghost.even = of.even;
-    each_donor(ghost, [&](Donor& donor, double w) {
+  });
+  std::vector<WallEffect> effects(chunks(layer.donors.size()) + chunks(layer.ghosts.size()));
+  std::vector<double> works(effects.size(), 0.0);
+  /// c: of the chunk.
+  const auto change = [&](const auto& at, const Vector<dim>& by, std::size_t c) {
+    const Vector<dim> v = read<dim>(block(at).v, at.place);
+    Vector<dim> v_new = v;
+    add(v_new, 1.0, by);
+    write<dim>(block(at).v, at.place, v_new);
+    effects[c].kinetic_after += 0.5 * at.mass * (dot(v_new, v_new) - dot(v, v));
+    effects[c].impulses +=
+        0.5 * at.mass * (dot(by, read<dim>(block(at).u, at.place)) + dot(by, v_new));
+    works[c] += at.mass * dot(by, at.velocity);
+  };
+  each(layer.donors, [&](std::size_t n, std::size_t c) {
+    Donor& donor = layer.donors[n];
+    if (!(donor.mass > 0.0)) return;
+    donor.odd_mass = donor.even_mass = donor.mass;
+    donor.odd = donor.even = {};
+    for (std::size_t f = layer.first_follower[n]; f < layer.first_follower[n + 1]; ++f) {
+      const Follower& follower = layer.followers[f];
+      const Ghost& ghost = layer.ghosts[static_cast<std::size_t>(follower.ghost)];
+      if (!ghost.acts) continue;
+      const double w = ghost.weight[static_cast<std::size_t>(follower.k)] * ghost.per_borne;
+      const double s = ghost.per_borne > 0.0 ? ghost.s : 0.0;
       donor.odd_mass += ghost.mass * w * s * s;
       donor.even_mass += ghost.mass * w;
       add(donor.odd, -ghost.mass * w * s, ghost.odd);
       add(donor.even, ghost.mass * w, ghost.even);
-    });
-  }
-  for (Donor& donor : layer.donors) {
-    if (!(donor.mass > 0.0)) continue;
+    }
     for (std::size_t i = 0; i < dim; ++i) {
       donor.odd[i] /= donor.odd_mass;
       donor.even[i] /= donor.even_mass;
     }
-  }
-  WallEffect effect;
-  const auto change = [&](const auto& at, const Vector<dim>& by) {
-    const Vector<dim> v = velocity(at);
-    Vector<dim> v_new = v;
-    add(v_new, 1.0, by);
-    write<dim>(block(at).v, at.place, v_new);
-    effect.kinetic_after += 0.5 * at.mass * (dot(v_new, v_new) - dot(v, v));
-    effect.impulses += 0.5 * at.mass * (dot(by, read<dim>(block(at).u, at.place)) + dot(by, v_new));
-    work += at.mass * dot(by, at.velocity);
-  };
-  for (const Ghost& ghost : layer.ghosts) {
-    if (!ghost.acts) continue;
+    Vector<dim> by = donor.odd;
+    add(by, 1.0, donor.even);
+    change(donor, by, c);
+  });
+  each(layer.ghosts, [&](std::size_t n, std::size_t c) {
+    const Ghost& ghost = layer.ghosts[n];
+    if (!ghost.acts) return;
     Vector<dim> by{};
     add(by, -1.0, ghost.odd);
     add(by, -1.0, ghost.even);
@@ -415,19 +469,17 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
       add(by, -ghost.s * w, donor.odd);
       add(by, w, donor.even);
     });
-    change(ghost, by);
-  }
-  for (const Donor& donor : layer.donors) {
-    if (!(donor.mass > 0.0)) continue;
-    Vector<dim> by = donor.odd;
-    add(by, 1.0, donor.even);
-    change(donor, by);
-  }
+    change(ghost, by, chunks(layer.donors.size()) + c);
+  });
+  WallEffect effect;
+  for (const WallEffect& of_chunk : effects) effect += of_chunk;
+  work = std::accumulate(works.begin(), works.end(), work);
   return effect;
 }
 
 template <int dim>
-WallEffect RigidContact<dim>::apply(GridOf<dim>& grid, double time, bool sorted, double& work) {
+WallEffect RigidContact<dim>::apply(GridOf<dim>& grid, double time, bool sorted,
+                                    tbb::task_arena& arena, double& work) {
   WallEffect effect;
   layers_.resize(surfaces_.size());
   h_ = grid.h();
@@ -435,7 +487,7 @@ WallEffect RigidContact<dim>::apply(GridOf<dim>& grid, double time, bool sorted,
   for (std::size_t axis = 0; axis < dim; ++axis) cells_[axis] = grid.cells()[axis];
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     if (sorted || surfaces_[k].moves()) build(surfaces_[k], layers_[k], grid, time);
-    effect += apply(surfaces_[k], layers_[k], grid, work);
+    effect += apply(surfaces_[k], layers_[k], grid, arena, work);
   }
   return effect;
 }
@@ -520,8 +572,9 @@ void RigidContact<dim>::transpose(GridOf<dim>& grid) const {
 }
 
 template <int dim>
-void RigidContact<dim>::keep_out(const std::array<double*, dim>& x, std::size_t count, double time,
-                                 double hair) const {
+double RigidContact<dim>::keep_out(const std::array<double*, dim>& x, std::size_t count,
+                                   double time, double hair) const {
+  double farthest = 0.0;
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const Surface& surface = surfaces_[k];
     const bool has_lids = k < layers_.size() && !layers_[k].lids.empty();
@@ -532,8 +585,10 @@ void RigidContact<dim>::keep_out(const std::array<double*, dim>& x, std::size_t 
       if (!surface.holds_at(time, place)) continue;
       const Nearest at = surface.nearest_at(time, place);
       for (std::size_t i = 0; i < dim; ++i) x[i][n] += (hair - at.distance) * at.normal[i];
+      farthest = std::max(farthest, hair - at.distance);
     }
   }
+  return farthest;
 }
 
 template class RigidContact<2>;

@@ -32,6 +32,8 @@
 #include <map>
 #include <vector>
 
+#include <tbb/task_arena.h>
+
 #include "mpm/boundary/walls.hpp"
 #include "mpm/grid/grid.hpp"
 #include "mpm/scene/solid.hpp"
@@ -46,25 +48,31 @@ class RigidContact {
   bool empty() const { return surfaces_.empty(); }
   /// Whether anything may come within a cell of a surface from a block of points.
   bool is_near(const GridOf<dim>& grid, const PointBlockOf<dim>& block, double time) const;
-  /// Applies the surfaces, one after the other, where they are at a time. `sorted`: the grid's
-  /// blocks are not those of the call before. Returns what it did to the energy, and adds to `work`
-  /// that of the surfaces' own motion on the material.
-  WallEffect apply(GridOf<dim>& grid, double time, bool sorted, double& work);
+  /// Applies the surfaces, one after the other, where they are at a time, on the arena's threads.
+  /// `sorted`: the grid's blocks are not those of the call before. Returns what it did to the
+  /// energy, and adds to `work` that of the surfaces' own motion on the material.
+  WallEffect apply(GridOf<dim>& grid, double time, bool sorted, tbb::task_arena& arena,
+                   double& work);
   /// Does to the grid's velocities after forces the transposed of what the last apply() did, of
   /// surfaces at rest without friction.
   void transpose(GridOf<dim>& grid) const;
   /// Puts places that lie behind a surface on its front side, a hair away. x: of `count` places
-  /// along each axis.
-  void keep_out(const std::array<double*, dim>& x, std::size_t count, double time,
-                double hair) const;
+  /// along each axis. Returns the farthest way of any [m].
+  double keep_out(const std::array<double*, dim>& x, std::size_t count, double time,
+                  double hair) const;
 
  private:
   struct Donor {
     std::int32_t block, place;
     std::array<double, dim> velocity;  ///< of the surface
-    // of the step: m_j, m_j + Σ m_g w s², m_j + Σ m_g w, and the two corrections
+    // of the step: m_j, v_j relative to the surface, m_j + Σ m_g w s², m_j + Σ m_g w, and the two
+    // corrections
     double mass, odd_mass, even_mass;
-    std::array<double, dim> odd, even;
+    std::array<double, dim> relative, odd, even;
+  };
+  /// A ghost that follows a donor: its k-th.
+  struct Follower {
+    std::int32_t ghost, k;
   };
   /// Of a ghost, all that follows from where the surface lies.
   struct Geometry {
@@ -96,6 +104,9 @@ class RigidContact {
   struct Layer {  ///< of one surface
     std::vector<Ghost> ghosts;
     std::vector<Donor> donors;
+    /// Of one donor after the other, ghosts in their order; whose are the first's, the second's, …
+    std::vector<Follower> followers;
+    std::vector<std::size_t> first_follower;
     /// Of ground, above each column of cells, x first.
     std::vector<Lid> lids;
     /// By place of the block; of a surface at rest, for as long as the run lasts.
@@ -109,7 +120,9 @@ class RigidContact {
                     const NodeBlockOf<dim>& block);
   bool is_above_lid(const std::vector<Lid>& lids, const std::array<double*, dim>& x,
                     std::size_t place) const;
-  WallEffect apply(const Surface& surface, Layer& layer, GridOf<dim>& grid, double& work) const;
+  static void list_followers(Layer& layer);
+  static WallEffect apply(const Surface& surface, Layer& layer, GridOf<dim>& grid,
+                          tbb::task_arena& arena, double& work);
   static void transpose(const Surface& surface, const Layer& layer, GridOf<dim>& grid);
 
   std::vector<Surface> surfaces_;

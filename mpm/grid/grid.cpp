@@ -1,5 +1,6 @@
 #include "mpm/grid/grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -56,16 +57,17 @@ bool GridOf<dim>::inside(const Index& block) const {
   return true;
 }
 
+/// Widens what a block's points touch by what one with this anchor does: one of the four nodes of a
+/// stencil, the second, after a cell of drift.
 template <int dim>
-std::array<std::int32_t, Shape<dim>::around> GridOf<dim>::around(
-    const Index& block, const std::vector<std::int32_t>& table) const {
-  std::array<std::int32_t, Shape<dim>::around> found{};
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    Index near = Shape<dim>::neighbour(k);
-    for (std::size_t a = 0; a < near.size(); ++a) near[a] += block[a];
-    found[k] = inside(near) ? table[table_index(near)] : -1;
+void include_anchor(TilePart<dim>& touched, std::size_t place) {
+  for (std::size_t a = 0; a < touched.size(); ++a) {
+    const auto anchors = static_cast<std::size_t>(Shape<dim>::cells[a] + 1);
+    const int at = Shape<dim>::margin[a] + static_cast<int>(place % anchors);
+    place /= anchors;
+    touched[a].begin = std::min(touched[a].begin, at - 2);
+    touched[a].end = std::max(touched[a].end, std::min(at + 4, Shape<dim>::tile[a]));
   }
-  return found;
 }
 
 template <int dim>
@@ -110,6 +112,8 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies, double anchor_offset)
     PointBlockOf<dim>& fresh = point_blocks.emplace_back();
     fresh.at = block_at(block);
     fresh.range.resize(bodies.size());
+    for (std::size_t a = 0; a < fresh.touched.size(); ++a)
+      fresh.touched[a] = {Shape<dim>::tile[a], 0};
   }
 
   const auto anchor_slot = [&](std::uint64_t key) {
@@ -131,6 +135,7 @@ void GridOf<dim>::sort(std::vector<PointsOf<dim>>& bodies, double anchor_offset)
         const std::size_t there = start[key];
         start[key] = next;
         next += there;
+        if (there > 0) include_anchor<dim>(point_blocks[block].touched, key - first_key);
       }
       range.count = next - range.begin;
       next = range.begin + padded(range.count);
@@ -166,21 +171,40 @@ template <int dim>
 void GridOf<dim>::connect() {
   std::fill(node_table_.begin(), node_table_.end(), -1);
   node_blocks.clear();
+  /// f(which of the blocks around, its place in the tables) for those that a block's points touch.
+  const auto each_touched = [&](const PointBlockOf<dim>& pb, auto&& f) {
+    for (std::size_t k = 0; k < Shape<dim>::around; ++k) {
+      const Index offset = Shape<dim>::neighbour(k);
+      if (!pb.touches(offset)) continue;
+      Index near = pb.at;
+      for (std::size_t a = 0; a < near.size(); ++a) near[a] += offset[a];
+      if (inside(near)) f(k, table_index(near));
+    }
+  };
   std::vector<char> live(node_table_.size(), 0);
   for (const PointBlockOf<dim>& pb : point_blocks)
-    for (std::size_t k = 0; k < Shape<dim>::around; ++k) {
-      Index near = Shape<dim>::neighbour(k);
-      for (std::size_t a = 0; a < near.size(); ++a) near[a] += pb.at[a];
-      if (inside(near)) live[table_index(near)] = 1;
-    }
+    each_touched(pb, [&](std::size_t, std::size_t block) { live[block] = 1; });
   for (std::size_t block = 0; block < live.size(); ++block) {
     if (!live[block]) continue;
     node_table_[block] = static_cast<std::int32_t>(node_blocks.size());
-    node_blocks.emplace_back().at = block_at(block);
+    NodeBlockOf<dim>& fresh = node_blocks.emplace_back();
+    fresh.at = block_at(block);
+    fresh.point_block.fill(-1);
   }
-  for (PointBlockOf<dim>& pb : point_blocks) pb.node_block = around(pb.at, node_table_);
-  for (NodeBlockOf<dim>& nb : node_blocks) nb.point_block = around(nb.at, point_table_);
+  for (std::size_t p = 0; p < point_blocks.size(); ++p) {
+    PointBlockOf<dim>& pb = point_blocks[p];
+    pb.node_block.fill(-1);
+    each_touched(pb, [&](std::size_t k, std::size_t block) {
+      pb.node_block[k] = node_table_[block];
+      node_blocks[static_cast<std::size_t>(node_table_[block])]
+          .point_block[Shape<dim>::around - 1 - k] = static_cast<std::int32_t>(p);
+    });
+  }
   tiles.resize(point_blocks.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size()), [&](const auto& r) {
+    for (std::size_t k = r.begin(); k != r.end(); ++k)
+      for (TileField<dim>& channel : tiles[k]) channel.fill(0.0);
+  });
 }
 
 template <int dim>

@@ -100,13 +100,38 @@ template <int dim>
 struct alignas(64) TileOf : std::array<TileField<dim>, Channels<dim>::count> {};
 using Tile = TileOf<2>;
 
+/// Nodes of a tile along one axis, from `begin` up to the one before `end`.
+struct TileRows {
+  int begin = 0, end = 0;
+};
+/// Of a tile, along every axis.
+template <int dim>
+using TilePart = std::array<TileRows, Shape<dim>::axes>;
+
 /// The points of one block, all bodies.
 template <int dim>
 struct PointBlockOf {
   std::array<int, Shape<dim>::axes> at{};  ///< block coordinates
-  std::array<std::int32_t, Shape<dim>::around>
-      node_block{};              ///< the node blocks around, row by row
+  /// The node blocks around, row by row; −1 where the points touch none of their nodes
+  std::array<std::int32_t, Shape<dim>::around> node_block{};
   std::vector<SlotRange> range;  ///< per body
+  /// The part of the tile with all nodes that the points can touch before they are sorted again. A
+  /// thin flow fills a row or two of its blocks' cells, and the rest would be most of its cost.
+  TilePart<dim> touched = whole_tile();
+
+  static TilePart<dim> whole_tile() {
+    TilePart<dim> all;
+    for (std::size_t a = 0; a < all.size(); ++a) all[a] = {0, Shape<dim>::tile[a]};
+    return all;
+  }
+  /// Whether the points touch nodes of a block beside this one, −1, 0 or 1 along each axis.
+  bool touches(const std::array<int, Shape<dim>::axes>& offset) const {
+    for (std::size_t a = 0; a < offset.size(); ++a) {
+      const int begin = Shape<dim>::margin[a] + offset[a] * Shape<dim>::cells[a];
+      if (touched[a].begin >= begin + Shape<dim>::cells[a] || touched[a].end <= begin) return false;
+    }
+    return true;
+  }
 
   std::size_t points() const {
     std::size_t n = 0;
@@ -128,7 +153,7 @@ struct alignas(64) NodeBlockOf {
   /// Mass average of what the tiles' last channel carries, if it carries anything
   Nodes extra{};
   std::array<int, Shape<dim>::axes> at{};  ///< block coordinates
-  /// The point blocks around; −1 where there is none
+  /// The point blocks around; −1 where there is none that touches a node of this one
   std::array<std::int32_t, Shape<dim>::around> point_block{};
 };
 using NodeBlock = NodeBlockOf<2>;
@@ -186,16 +211,13 @@ class GridOf {
 
   std::vector<PointBlockOf<dim>> point_blocks;
   std::vector<NodeBlockOf<dim>> node_blocks;
-  std::vector<TileOf<dim>> tiles;  ///< one per point block
+  std::vector<TileOf<dim>> tiles;  ///< one per point block; zero beyond what its points touch
 
  private:
   std::size_t table_index(const Index& block) const;
   Index block_at(std::size_t table_index) const;
   /// Place of a cell or node in its block.
   static int place_in(const Index& block, const Index& index);
-  /// The entries of a table for the blocks around one.
-  std::array<std::int32_t, Shape<dim>::around> around(const Index& block,
-                                                      const std::vector<std::int32_t>& table) const;
   bool inside(const Index& block) const;
   void connect();
 

@@ -165,7 +165,7 @@ class EquilibriumSearch {
     if constexpr (dim == 2)
       if (walls_.periodic()) join_periodic_edges(s_.grid);
     double work = 0.0;
-    contact_.apply(s_.grid, 0.0, !std::exchange(connected_, true), work);
+    contact_.apply(s_.grid, 0.0, !std::exchange(connected_, true), s_.arena, work);
     apply_walls(s_.grid, walls_, &mirrored_);
     return weighted();
   }
@@ -444,7 +444,7 @@ class EquilibriumSearch {
       surface.velocity = {};
       surface.spin = 0.0;
     }
-    RigidContact<dim>(surfaces).apply(s_.grid, 0.0, true, work);
+    RigidContact<dim>(surfaces).apply(s_.grid, 0.0, true, s_.arena, work);
     apply_walls(s_.grid, walls);
     return share_of_weight(weighted());
   }

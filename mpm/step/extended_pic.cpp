@@ -76,8 +76,8 @@ void Simulation::Impl<2>::extend_velocity() {
       fill_tile(pb, there.v[0], [&](std::size_t b) { return remainder_[b].x.data(); });
       fill_tile(pb, there.v[1], [&](std::size_t b) { return remainder_[b].y.data(); });
       Tile& back = grid.tiles[k];
-      back[T_PX].fill(0.0);
-      back[T_PY].fill(0.0);
+      clear_touched(pb, back[T_PX]);
+      clear_touched(pb, back[T_PY]);
       for (std::size_t b = 0; b < bodies.size(); ++b)
         bodies[b].read(pb.range[b], [&](const PointSet& points, const SlotRange& range) {
           if (scene.kernel == mpm::Kernel::cubic)

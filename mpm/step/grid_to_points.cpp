@@ -47,7 +47,8 @@ void Simulation::Impl<dim>::grid_to_points(double dt) {
       advance_block<Kernel, Keeps::nothing, averages.value>(k, dt, keep, sums);
     // While the points of the block are in the cache: their way to the grid of the next step. If
     // any of them has left the tile, all blocks are sorted first (sort_if_needed), and this waits.
-    sums.transferred = drift + sums.signals.speed * dt < reach() && sums.failure.empty();
+    sums.transferred =
+        drift + sums.signals.speed * dt + sums.pushed < reach() && sums.failure.empty();
     if (!sums.transferred) return;
     transfer_to_tile(k, carries_next);
   };
@@ -152,7 +153,7 @@ void Simulation::Impl<dim>::move(PointsOf<dim>& points, const SlotRange& range,
   if (near_surface) {  // the grid's velocity leads along it to second order in h
     std::array<double*, dim> x;
     for (std::size_t i = 0; i < dim; ++i) x[i] = points.data(Layout<dim>::x + i) + range.begin;
-    contact.keep_out(x, range.count, tiles_time, hair);
+    sums.pushed = std::max(sums.pushed, contact.keep_out(x, range.count, tiles_time, hair));
   }
   for (std::size_t k = 0; k < range.count; k += Pack::size) {
     const std::size_t s = range.begin + k;

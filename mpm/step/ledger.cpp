@@ -12,6 +12,7 @@ void Simulation::Impl<dim>::close_ledger() {
   double work = 0.0;
   double power = 0.0;
   Signals now;
+  double pushed = 0.0;
   std::int64_t held = 0;
   const std::string* failure = nullptr;
   for (const BlockSums& sums : block_sums_) {
@@ -28,6 +29,7 @@ void Simulation::Impl<dim>::close_ledger() {
     power += sums.power;
     now.include(sums.signals);
     wall_corrections += sums.corrections;
+    pushed = std::max(pushed, sums.pushed);
     must_sort = must_sort || sums.outflow;
   }
   NodeSums nodes;
@@ -56,7 +58,7 @@ void Simulation::Impl<dim>::close_ledger() {
   points_held = held;
   most_points_held = std::max(most_points_held, held);
   point_steps_held += held;
-  drift += now.speed * last_dt;
+  drift += now.speed * last_dt + pushed;
   signals = now;
   if (scene.dt) {
     fixed_step_excess = std::max(fixed_step_excess, last_dt * seen().signal / grid.h());

@@ -1,6 +1,6 @@
 /// P2G: mass, momentum and internal force of every block's points on its tile.
 
-#include "mpm/grid/block_loops.hpp"
+#include "mpm/grid/tile_exchange.hpp"
 #include "mpm/step/body_force.hpp"
 #include "mpm/step/choose_kernel.hpp"
 #include "mpm/step/simulation_impl.hpp"
@@ -14,7 +14,7 @@ void Simulation::Impl<dim>::transfer_to_tile(std::size_t block) {
   const PointBlockOf<dim>& pb = grid.point_blocks[block];
   TileOf<dim>& tile = grid.tiles[block];
   constexpr bool has_extra = extra != Extra::nothing;
-  for (std::size_t c = 0; c < Channels<dim>::extra + has_extra; ++c) tile[c].fill(0.0);
+  for (std::size_t c = 0; c < Channels<dim>::extra + has_extra; ++c) clear_touched(pb, tile[c]);
   static thread_local AlignedVector<double> values;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (pb.range[b].count == 0) continue;

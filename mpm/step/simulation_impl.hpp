@@ -169,6 +169,7 @@ class Simulation::Impl {
     std::int64_t held = 0;     ///< points at the density floor
     double power = 0.0;
     Signals signals;
+    double pushed = 0.0;  ///< farthest that a rigid surface has put a point [m]
     std::int64_t corrections = 0;
     bool outflow = false;
     bool transferred = false;  ///< its tile holds the points as they are

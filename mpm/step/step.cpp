@@ -101,7 +101,7 @@ void Simulation::Impl<dim>::update_grid(double dt) {
   for_each_block(arena, grid.node_blocks.size(), [&](std::size_t k) {
     using C = Channels<dim>;
     NodeBlockOf<dim>& nb = grid.node_blocks[k];
-    alignas(64) NodeTotals<C::count, dim> sum{};
+    alignas(64) NodeTotals<C::count, dim> sum;
     std::array<std::size_t, C::count> all{};
     std::iota(all.begin(), all.end(), std::size_t{0});
     add_tiles<C::count>(grid, nb, all, sum, carries == Extra::nothing ? C::extra : C::count);
@@ -140,7 +140,7 @@ void Simulation::Impl<dim>::apply_boundaries(double dt) {
   wall_effect_ = {};
   if (!contact.empty()) {
     const bool sorted = std::exchange(contact_sorts_, sorts) != sorts;
-    wall_effect_ += contact.apply(grid, time, sorted, ledger.surface_work);
+    wall_effect_ += contact.apply(grid, time, sorted, arena, ledger.surface_work);
   }
   wall_effect_ += apply_walls(grid, walls, retention(dt).extended ? &mirrored_ : nullptr);
 }

@@ -395,10 +395,11 @@ void expect_transposed(const std::vector<Surface>& surfaces) {
   }
   const Walls walls{scene.left, scene.right, scene.floor, scene.top, scene.near, scene.far};
   RigidContact<dim> contact(surfaces);
+  tbb::task_arena arena(1);
   std::vector<MirroredTriple> record;
   double work = 0.0;
   exchange(&x, nullptr);
-  contact.apply(grid, 0.0, true, work);
+  contact.apply(grid, 0.0, true, arena, work);
   apply_walls(grid, walls, &record);
   exchange(nullptr, &Tx);
   exchange(&y, nullptr);

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "models/scalar.hpp"
+#include "mpm/grid/kernel.hpp"
+#include "mpm/grid/tile_exchange.hpp"
 #include "tests/mpm/point_cloud.hpp"
 
 namespace repose::mpm {
@@ -108,14 +110,11 @@ TEST(GridTest, EveryBoxHasItsGhosts) {
       bodies[0] = labelled(bodies[0]);
       grid.sort(bodies);
       expect_sorted(grid, bodies[0], 0);
-      for (const PointBlock& pb : grid.point_blocks) {
-        const int i = Grid::first_x(pb.at[0]);
-        const int j = Grid::first_y(pb.at[1]);
+      for (std::size_t s = 0; s < bodies[0].slots(); ++s) {
+        const int i = cell(bodies[0][X][s]), j = cell(bodies[0][Y][s]);
         // all nodes that a stencil can reach within a cell of drift, the box's ghosts included
-        for (int node_j = std::max(j - 2, -1); node_j <= std::min(j + block_ny + 2, ny + 1);
-             ++node_j)
-          for (int node_i = std::max(i - 2, -1); node_i <= std::min(i + block_nx + 2, nx + 1);
-               ++node_i) {
+        for (int node_j = std::max(j - 2, -1); node_j <= std::min(j + 3, ny + 1); ++node_j)
+          for (int node_i = std::max(i - 2, -1); node_i <= std::min(i + 3, nx + 1); ++node_i) {
             const Grid::NodeRef at = grid.node(node_i, node_j);
             ASSERT_NE(at.block, nullptr) << nx << " x " << ny << ": " << node_i << ", " << node_j;
             EXPECT_EQ(Grid::first_x(at.block->at[0]) + static_cast<int>(at.place) % block_nx,
@@ -158,6 +157,90 @@ TEST(GridTest, RestoreBringsBackWhatSortMade) {
   }
   for (std::size_t k = 0; k < grid.point_blocks.size(); ++k)
     EXPECT_EQ(other.point_blocks[k].node_block, grid.point_blocks[k].node_block);
+}
+
+/// Points of a sheet, at least and at most so high and sloped by one cell in three, a cell of drift
+/// later: what their stencils touch lies in what their block says that it touches, is alive, and
+/// holds all that the tile may hold.
+template <class Kernel, int dim>
+void expect_touched(double low, double high, std::uint64_t seed) {
+  using F = Layout<dim>;
+  using S = Shape<dim>;
+  constexpr int cells = 40;
+  std::array<int, dim> box;
+  box.fill(cells);
+  GridOf<dim> grid(h, box);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> share(0.0, 1.0), sign(-1.0, 1.0);
+  std::vector<PointsOf<dim>> bodies(1);
+  PointsOf<dim>& points = bodies[0];
+  points.fields = F::state;
+  for (int n = 0; n < 400; ++n) {
+    for (std::size_t f = 0; f < points.fields; ++f) points.field[f].push_back(0.0);
+    for (std::size_t a = 0; a < dim; ++a)
+      points.field[F::x + a].back() = h * (2.0 + (cells - 4.0) * share(random));
+    points.field[F::x + 1].back() =
+        points.field[F::x].back() / 3.0 + h * (low + (high - low) * share(random));
+    points.id.push_back(n);
+    ++points.count;
+  }
+  grid.sort(bodies, Kernel::anchor_offset);
+  std::size_t rows = 0;
+  for (const PointBlockOf<dim>& pb : grid.point_blocks) {
+    rows += static_cast<std::size_t>(pb.touched[1].end - pb.touched[1].begin);
+    for (std::size_t s = pb.range[0].begin; s < pb.range[0].begin + pb.range[0].count; ++s)
+      for (int again = 0; again < 8; ++again) {
+        std::array<int, dim> first;
+        for (std::size_t a = 0; a < dim; ++a)
+          first[a] =
+              static_cast<int>(Kernel::anchor(points[F::x + a][s] / h + 0.98 * sign(random))) - 1;
+        int stencil = 1;
+        for (int a = 0; a < dim; ++a) stencil *= Kernel::rows;
+        for (int n = 0; n < stencil; ++n) {
+          std::array<int, dim> node = first;
+          int rest = n;
+          for (std::size_t a = 0; a < dim; ++a, rest /= Kernel::rows) {
+            node[a] += rest % Kernel::rows;
+            const int in_tile = node[a] - GridOf<dim>::first(a, pb.at[a]) + S::margin[a];
+            ASSERT_GE(in_tile, pb.touched[a].begin);
+            ASSERT_LT(in_tile, pb.touched[a].end);
+          }
+          const typename GridOf<dim>::NodeRef at = grid.node(node);
+          ASSERT_NE(at.block, nullptr);
+          ASSERT_TRUE(touched_nodes(grid, *at.block)[at.place]);
+        }
+      }
+  }
+  // a row of cells, a cell of drift and the stencil: six rows; and one in three for the slope of a
+  // block that it does not cross
+  if (high - low <= 1.0) {
+    EXPECT_LE(static_cast<double>(rows) / static_cast<double>(grid.point_blocks.size()),
+              dim == 2 ? 9.0 : 8.0)
+        << "of " << S::tile[1];
+  }
+}
+
+TEST(GridTest, ABlockSaysWhatItsPointsCanTouch) {
+  for (const double high : {3.5, 4.0, 9.0}) {
+    expect_touched<CubicKernel, 2>(3.0, high, 11);
+    expect_touched<QuadraticKernel, 2>(3.0, high, 12);
+    expect_touched<CubicKernel, 3>(3.0, high, 13);
+    expect_touched<QuadraticKernel, 3>(3.0, high, 14);
+  }
+}
+
+/// What is beyond a block's touched part is zero after a sort, whatever the tile held before.
+TEST(GridTest, TilesAreZeroWhereNothingTouchesThem) {
+  Grid grid(h, 40, 20);
+  std::vector<PointSet> bodies{random_points(200, {1, 1}, {9, 4}, 8)};
+  grid.sort(bodies);
+  for (Tile& tile : grid.tiles)
+    for (auto& channel : tile) channel.fill(7.0);
+  bodies = {random_points(50, {1, 2}, {9, 2.2}, 9)};
+  grid.sort(bodies);
+  for (const Tile& tile : grid.tiles)
+    for (const auto& channel : tile)
+      for (const double value : channel) ASSERT_EQ(value, 0.0);
 }
 
 }  // namespace
