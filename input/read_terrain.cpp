@@ -7,70 +7,17 @@
 
 #include "input/key_info.hpp"
 #include "input/read_surface.hpp"
-#include "input/shipped_input.hpp"
+#include "input/source_file.hpp"
 #include "input/toml_reader.hpp"
 #include "input/toml_text.hpp"
 #include "io/atomic_file.hpp"
-#include "io/fingerprint.hpp"
 #include "io/seal.hpp"
-#include "io/table_error.hpp"
 
 namespace repose::input {
 namespace {
 
 namespace fs = std::filesystem;
-using File = mpm::Terrain::File;
-
-constexpr std::size_t most_bytes = 1'000'000'000;  // as of a table (io/raw_table.cpp)
-
-/// The bytes of a map that a key names, beside the scene's file or one of those that come with
-/// repose; its name becomes one that holds from anywhere. Nothing, reported, if there is none.
-std::optional<std::string> read_map(TomlReader& table, std::string_view key, File& file) {
-  const Origin origin = table.file().origin(table.path_of(key));
-  fs::path path = file.name;
-  if (!origin.is_override() && path.is_relative())
-    path = fs::path(origin.source).parent_path() / path;
-  std::string bytes;
-  if (fs::exists(path)) {
-    try {
-      bytes = io::read_bytes(path, most_bytes);
-    } catch (const io::IoError& error) {
-      table.report(key, error.what());
-      return {};
-    }
-    file.name = fs::absolute(path).lexically_normal().string();
-  } else if (const auto shipped = shipped_map(file.name)) {
-    bytes = *shipped;
-  } else {
-    const std::string near = similar_file(path);
-    table.report(key, fmt::format("{}: there is no such file{}", path.string(),
-                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-    return {};
-  }
-  const std::string content = io::fingerprint_of(bytes);
-  if (!file.content.empty() && file.content != content) {
-    table.report(key, fmt::format("{}: this is not the file that the scene was made with (its "
-                                  "content is {}, and was {})",
-                                  path.string(), content, file.content));
-    return {};
-  }
-  file.content = content;
-  return bytes;
-}
-
-/// What parse(bytes, name) makes of a map; its complaint is reported.
-template <class Parse>
-auto parsed(TomlReader& table, std::string_view key, File& file, Parse&& parse)
-    -> std::optional<decltype(parse(std::string(), std::string()))> {
-  const std::optional<std::string> bytes = read_map(table, key, file);
-  if (!bytes) return {};
-  try {
-    return parse(*bytes, file.name);
-  } catch (const io::TableError& error) {
-    table.report(key, error.what());
-    return {};
-  }
-}
+using File = mpm::SourceFile;
 
 /// Reports the first cell without data, or below `least`.
 bool is_whole(TomlReader& table, std::string_view key, const File& file, const io::Raster& map,
@@ -103,7 +50,7 @@ void ground_keys(Keys& keys, mpm::Terrain& terrain) {
     if (is_whole(*table, "ground", file, *map, -HUGE_VAL)) terrain.ground_map = std::move(*map);
   std::error_code ignored;
   const fs::path crs = fs::path(file.name).replace_extension(".prj");
-  if (fs::exists(crs, ignored)) terrain.crs = io::read_bytes(crs, most_bytes);
+  if (fs::exists(crs, ignored)) terrain.crs = io::read_bytes(crs, most_source_bytes);
 }
 
 void release_keys(Keys& keys, mpm::Terrain& terrain) {

@@ -44,11 +44,7 @@ class Release {
 };
 
 struct Terrain {
-  /// A file that it was read from, as the scene names it, and the fingerprint of its bytes.
-  struct File {
-    std::string name, content;
-  };
-  File ground_file, release_file, friction_file;
+  SourceFile ground_file, release_file, friction_file;
 
   io::Raster ground_map;  ///< elevations [m]
   std::string crs;        ///< coordinate system of the maps, content of the .prj file beside it

@@ -169,6 +169,57 @@ double farthest(const mpm::Polygon& outline, const Place& from) {
   return distance;
 }
 
+/// One line around an outline and its holes: what two of them surround is not in it.
+mpm::Polygon joined(const mpm::Outline& outline) {
+  if (outline.size() == 1) return outline.front();
+  mpm::Polygon line;
+  for (const mpm::Polygon& ring : outline) {
+    line.corners.insert(line.corners.end(), ring.corners.begin(), ring.corners.end());
+    line.corners.push_back(ring.corners.front());
+  }
+  return line;
+}
+
+/// Corners of the rectangle around a body.
+std::pair<Place, Place> around(const mpm::Body& body) {
+  return {{body.origin[0], body.origin[1]},
+          {body.origin[0] + body.size[0], body.origin[1] + body.size[1]}};
+}
+
+/// Of a body that other shapes cut, from the distances of them all.
+std::vector<mpm::Polygon> cut_outlines(const mpm::Body& body, double z) {
+  mpm::Body uncut = body;
+  uncut.within.clear();
+  uncut.without.clear();
+  const std::vector<mpm::Polygon> whole = outlines_of(uncut, z);
+  const auto distance = [&](double x, double y) {
+    double out = HUGE_VAL;
+    for (const mpm::Polygon& part : whole)
+      out = std::min(out, mpm::nearest({part, false}, {x, y, z}).distance);
+    for (const mpm::Solid& solid : body.within)
+      out = std::max(out, nearest(solid, {x, y, z}).distance);
+    for (const mpm::Solid& solid : body.without)
+      out = std::max(out, -nearest(solid, {x, y, z}).distance);
+    return out;
+  };
+  const auto [low, high] = around(body);
+  std::vector<mpm::Polygon> found;
+  if (whole.empty()) return found;
+  for (const mpm::Outline& outline : mpm::outlines_of(distance, low, high))
+    found.push_back(joined(outline));
+  return found;
+}
+
+/// x and y of its corners, and of the first again.
+std::pair<std::vector<double>, std::vector<double>> closed_line(const mpm::Polygon& polygon) {
+  std::vector<double> xs, ys;
+  for (std::size_t k = 0; k <= polygon.corners.size(); ++k) {
+    xs.push_back(polygon.corners[k % polygon.corners.size()][0]);
+    ys.push_back(polygon.corners[k % polygon.corners.size()][1]);
+  }
+  return {xs, ys};
+}
+
 void draw_surfaces(Axes& axes, const mpm::Scene& scene, const Section& section) {
   std::vector<std::string> names;
   for (const mpm::Surface& surface : scene.surfaces)
@@ -179,21 +230,26 @@ void draw_surfaces(Axes& axes, const mpm::Scene& scene, const Section& section) 
     for (std::size_t k = 0; k < names.size(); ++k) legend += (k == 0 ? ": " : ", ") + names[k];
   }
   for (const mpm::Surface& surface : scene.surfaces) {
-    const mpm::Polygon outline = surface.outline(section.time_s, section.middle(), {0.0, 0.0},
-                                                 {scene.domain[0], scene.domain[1]});
-    if (outline.corners.size() < 3) continue;
-    std::vector<double> xs, ys;
-    for (std::size_t k = 0; k <= outline.corners.size(); ++k) {
-      xs.push_back(outline.corners[k % outline.corners.size()][0]);
-      ys.push_back(outline.corners[k % outline.corners.size()][1]);
+    const std::vector<mpm::Outline> outlines = surface.outlines(
+        section.time_s, section.middle(), {0.0, 0.0}, {scene.domain[0], scene.domain[1]});
+    const mpm::Polygon* largest = nullptr;
+    for (const mpm::Outline& outline : outlines) {
+      if (!surface.solid.hollow) {
+        const auto [xs, ys] = closed_line(joined(outline));
+        axes.area("", xs, ys, drawn_in(Colour::grey, 1.0));
+      }
+      for (const mpm::Polygon& ring : outline) {
+        const auto [xs, ys] = closed_line(ring);
+        axes.line(std::exchange(legend, ""), xs, ys, drawn_in(Colour::black, outline_px));
+      }
+      if (largest == nullptr || mpm::piece_of(outline.front()).area > mpm::piece_of(*largest).area)
+        largest = &outline.front();
     }
-    if (!surface.solid.hollow) axes.area("", xs, ys, drawn_in(Colour::grey, 1.0));
-    axes.line(std::exchange(legend, ""), xs, ys, drawn_in(Colour::black, outline_px));
-    if (section.explained && surface.moves())
+    if (section.explained && surface.moves() && largest != nullptr)
       draw_motion(axes, scene,
                   {surface.name,
-                   mpm::piece_of(outline).centroid,
-                   farthest(outline, surface.pivot),
+                   mpm::piece_of(*largest).centroid,
+                   farthest(*largest, surface.pivot),
                    {surface.velocity[0], surface.velocity[1]},
                    surface.spin,
                    surface.pivot,
@@ -298,7 +354,17 @@ std::vector<EdgeStretch> edge_stretches(const mpm::Scene& scene, double z) {
 }
 
 std::vector<mpm::Polygon> outlines_of(const mpm::Body& body, double z) {
+  if (!body.within.empty() || !body.without.empty()) return cut_outlines(body, z);
   if (body.polygon) return {*body.polygon};
+  if (body.solid) {
+    mpm::Surface alike;
+    alike.solid = *body.solid;
+    const auto [low, high] = around(body);
+    std::vector<mpm::Polygon> found;
+    for (const mpm::Outline& outline : alike.outlines(0.0, z, low, high))
+      found.push_back(joined(outline));
+    return found;
+  }
   const auto rectangle = [&](double from, double to) {
     const double low = body.origin[1], high = low + body.size[1];
     return mpm::Polygon{{{from, low}, {to, low}, {to, high}, {from, high}}};
