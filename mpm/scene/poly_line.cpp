@@ -61,7 +61,7 @@ std::optional<PolyLine::Fault> PolyLine::fault_of(const std::vector<Point>& poin
   const std::size_t n = points.size(), least = closed ? 3 : 2;
   if (n < least)
     return Fault{n == 0 ? 0 : n - 1,
-                 fmt::format("{} point{} are too few: {} takes {}", n, n == 1 ? "" : "s",
+                 fmt::format("{} {} too few: {} takes {}", n, n == 1 ? "point is" : "points are",
                              closed ? "a closed curve" : "an open curve", least)};
   if (n > most_points)
     return Fault{most_points,

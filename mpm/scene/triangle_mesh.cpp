@@ -139,7 +139,7 @@ std::optional<std::string> TriangleMesh::fault_of(const std::vector<Position>& v
     for (const double coordinate : x)
       if (!std::isfinite(coordinate)) return "a vertex is not finite";
   struct Use {
-    std::uint32_t first = 0;  ///< triangle
+    std::size_t first = 0, last = 0;  ///< triangles
     std::uint32_t forth = 0, back = 0;
   };
   std::unordered_map<std::uint64_t, Use> uses;
@@ -148,7 +148,8 @@ std::optional<std::string> TriangleMesh::fault_of(const std::vector<Position>& v
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = triangles[n][k], b = triangles[n][(k + 1) % 3];
       Use& use = uses[edge_key(a, b)];
-      if (use.forth + use.back == 0) use.first = static_cast<std::uint32_t>(n);
+      if (use.forth + use.back == 0) use.first = n;
+      use.last = n;
       ++(a < b ? use.forth : use.back);
     }
   // in the order of the file, not of the table of edges
@@ -162,10 +163,9 @@ std::optional<std::string> TriangleMesh::fault_of(const std::vector<Position>& v
       if (use.forth + use.back == 1)
         return where + " belongs to no other triangle: the surface has a hole there";
       if (use.forth + use.back == 2)
-        return where + fmt::format(
-                           " is run along in the same sense by triangle {}: one of the two "
-                           "faces the other way",
-                           use.first == n ? "that shares it" : fmt::format("{}", use.first + 1));
+        return where + fmt::format(" is run along in the same sense by triangle {}: one of the two "
+                                   "faces the other way",
+                                   (use.first == n ? use.last : use.first) + 1);
       return where +
              fmt::format(" belongs to {} triangles: two meet in an edge of a closed surface",
                          use.forth + use.back);

@@ -427,7 +427,7 @@ Gone gone(const Scene& scene, double time) {
 TEST(RigidSurfaceTest, ACurveAndAMeshAreThePlaneThatTheyDescribe) {
   const double h = 0.1, r = std::sqrt(0.5);
   const auto at = [&](double x, double y) {  // along the plane, and up from it
-    return std::array<double, 2>{1.0 + r * (x + y), 3.0 + r * (y - x)};
+    return std::array<double, 2>{1.0123 + r * (x + y), 3.0371 + r * (y - x)};
   };
   for (const bool space : {false, true}) {
     Scene scene = empty_box(4.0, 4.0, h);
@@ -441,7 +441,7 @@ TEST(RigidSurfaceTest, ACurveAndAMeshAreThePlaneThatTheyDescribe) {
     Surface plane;
     plane.contact = Surface::Contact::friction;
     plane.friction = 0.4;
-    plane.solid.shape = HalfSpace{{1.0, 3.0, 0.0}, {1.0, 1.0, 0.0}};
+    plane.solid.shape = HalfSpace{{1.0123, 3.0371, 0.0}, {1.0, 1.0, 0.0}};
     Body body = block(0.0, 0.0, 1.0, 1.0, unyielding());
     if (space) {
       const auto [x, y] = at(0.0, 0.0);

@@ -241,7 +241,7 @@ TEST(CurveTest, TellsWhatIsWrongWithItsPoints) {
   };
   EXPECT_EQ(fault({{0, 0}, {1, 0}, {1, 1}}, true), "");
   EXPECT_EQ(fault({{0, 0}, {1, 0}, {1, 1}}, false), "");
-  EXPECT_EQ(fault({{0, 0}}, false), "0: 1 point are too few: an open curve takes 2");
+  EXPECT_EQ(fault({{0, 0}}, false), "0: 1 point is too few: an open curve takes 2");
   EXPECT_EQ(fault({{0, 0}, {1, 1}}, true), "1: 2 points are too few: a closed curve takes 3");
   EXPECT_EQ(fault({{0, 0}, {1, 0}, {1, 0}, {1, 1}}, true),
             "2: the point (1, 0) is there twice in a row");
