@@ -163,9 +163,10 @@ std::optional<std::string> TriangleMesh::fault_of(const std::vector<Position>& v
       if (use.forth + use.back == 1)
         return where + " belongs to no other triangle: the surface has a hole there";
       if (use.forth + use.back == 2)
-        return where + fmt::format(" is run along in the same sense by triangle {}: one of the two "
-                                   "faces the other way",
-                                   (use.first == n ? use.last : use.first) + 1);
+        return where + fmt::format(
+                           " is run along in the same sense by triangle {}: one of the two "
+                           "faces the other way",
+                           (use.first == n ? use.last : use.first) + 1);
       return where +
              fmt::format(" belongs to {} triangles: two meet in an edge of a closed surface",
                          use.forth + use.back);

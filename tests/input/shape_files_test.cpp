@@ -38,8 +38,9 @@ TEST(ShapeFiles, ACurveIsReadInMetres) {
 
 TEST(ShapeFiles, ACurveIsRefusedWithItsRow) {
   EXPECT_EQ(complaint_about("x,y\n0,0\n1,0\n0,1\n", true, "m"), "");
-  EXPECT_EQ(complaint_about("# of a survey\nx_m,y_m\n0,1\n1,0\n0.5,0\n", false),
-            "c.csv:5: x falls from 1 to 0.5: along an open curve, below which all is rigid, it rises");
+  EXPECT_EQ(
+      complaint_about("# of a survey\nx_m,y_m\n0,1\n1,0\n0.5,0\n", false),
+      "c.csv:5: x falls from 1 to 0.5: along an open curve, below which all is rigid, it rises");
   EXPECT_EQ(complaint_about("x_m,y_m\n1,1\n0.5,3\n0.8,2\n0,0\n", false).substr(0, 15),
             "c.csv:3: x fall");  // read from the right: the same step the other way
   EXPECT_EQ(complaint_about("x_m,y_m\n0,0\n1,0\n1,0\n1,1\n", true),
@@ -64,7 +65,8 @@ TEST(ShapeFiles, AMeshIsScaledAndShifted) {
   EXPECT_EQ(surface->bounds().low, (mpm::Position{1.0, 2.0, 3.0}));
   EXPECT_EQ(surface->bounds().high, (mpm::Position{1.5, 2.5, 3.5}));
   std::string holed = text.str();
-  holed.erase(holed.find("facet"), holed.find("facet", holed.find("endfacet") + 8) - holed.find("facet"));
+  holed.erase(holed.find("facet"),
+              holed.find("facet", holed.find("endfacet") + 8) - holed.find("facet"));
   try {
     mesh_of(holed, "t.stl", mesh);
     FAIL();
