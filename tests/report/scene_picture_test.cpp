@@ -306,6 +306,24 @@ TEST(ScenePicture, ShapesOfBodies) {
   EXPECT_TRUE(outlines_of(pipe, 0.71).empty());
 }
 
+// By level lines on 400 places across: an arc is cut off by less than a hundredth of its area.
+TEST(ScenePicture, ShapesThatCutEachOther) {
+  mpm::Body ball;
+  set_solid(ball, {mpm::Ball{{0.5, 0.5, 0.4}, 0.3}, false}, {1.0, 1.0, 1.0});
+  ball.without = {{mpm::Cylinder{{0.5, 0.5, 0.0}, {0.0, 0.0, 1.0}, 0.1}, false}};
+  const std::vector<mpm::Polygon> ring = outlines_of(ball, 0.4);
+  ASSERT_EQ(ring.size(), 1u);
+  EXPECT_NEAR(std::abs(mpm::piece_of(ring[0]).area), std::numbers::pi * 0.08, 0.01 * 0.25);
+  EXPECT_TRUE(outlines_of(ball, 0.75).empty());
+
+  mpm::Surface pipe;  // along the section
+  pipe.solid = {mpm::Cylinder{{-1.0, 0.5, 0.5}, {1.0, 0.0, 0.0}, 0.2}, false};
+  const std::vector<mpm::Outline> bar = pipe.outlines(0.0, 0.5, {0.0, 0.0}, {1.0, 1.0});
+  ASSERT_EQ(bar.size(), 1u);
+  ASSERT_EQ(bar[0].size(), 1u);
+  EXPECT_NEAR(mpm::piece_of(bar[0][0]).area, 0.4, 1e-12);
+}
+
 TEST(ScenePicture, ATerrainFromAbove) {
   input::InputFile file = input::InputFile::read(REPOSE_SOURCE_DIR "/data/scenes/valley.toml");
   const mpm::Scene scene = input::read_scene(file).scene;
