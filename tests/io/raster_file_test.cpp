@@ -194,7 +194,7 @@ TEST_F(RasterFileTest, SaysWhatIsWrong) {
   EXPECT_THROW(read_raster(folder_.path() / "nothing.tif"), IoError);
   // an ESRI ASCII grid with a fault is told as one
   std::ofstream(folder_.path() / "comma.asc")
-      << "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1,5\n";
+      << "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 1,5\n";
   EXPECT_NE(complaint(folder_.path() / "comma.asc").find("decimal points"), std::string::npos);
 }
 

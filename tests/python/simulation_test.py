@@ -236,7 +236,7 @@ class Folders(unittest.TestCase):
             east = np.tile(500.0 - 1.2 * np.arange(columns), (rows, 1))
             depth = np.zeros((rows, columns))
             depth[4:8, 3:7] = 2.0  # 12 m by 12 m
-            scene = {"scene": {"end_time": 0.5}, "terrain": {
+            scene = {"scene": {"end_time": 1.5}, "terrain": {
                         "ground": write("ground.asc", east), "release": write("release.asc", depth), "friction": 0.2},
                      "body": [{"shape": "release", "law": law}], "grid": {"h": 1.5}}
             sim = repose.Simulation(scene, threads=1)
@@ -268,7 +268,7 @@ class Folders(unittest.TestCase):
                 repose.Map.read(broken)
             with self.assertRaises(OSError):
                 repose.Map.read(os.path.join(folder, "nothing.asc"))
-            self.assertEqual(len(result.plot().axes), 8)  # four panels, colour bars of two maps; one panel off
+            self.assertEqual(len(result.plot().axes), 6)  # series, energies, two maps with their colour bars
         with self.assertRaisesRegex(repose.InputError, "only a scene with a terrain"):
             repose.Simulation("flat_mu_i", threads=1, **COARSE).maps()
 
