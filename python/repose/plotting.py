@@ -198,8 +198,9 @@ def map_axes(drawn: "Map", axes: "Axes | None", least: float, options: dict[str,
         shown = np.where(drawn.values > least, drawn.values, np.nan)
         image = axes.imshow(shown, extent=drawn.extent, **{"interpolation": "nearest", **options})
         axes.grid(False)
+        axes.locator_params(axis="x", nbins=4)  # six digits each
         axes.set_xlabel("easting (m)")
         axes.set_ylabel("northing (m)")
         if figure is not None:
-            figure.colorbar(image, ax=axes, label=drawn.label)
+            figure.colorbar(image, ax=axes, label=drawn.label, shrink=0.7)
     return axes
