@@ -296,8 +296,15 @@ class Player {
       c.stroke();
     }
     c.textAlign = "left";
-    c.strokeStyle = mark;
-    c.lineWidth = 2;
+    // with a rim, to be seen upon points of any colour
+    const rimmed = () => {
+      c.lineWidth = 5;
+      c.strokeStyle = style.getPropertyValue("--stage");
+      c.stroke();
+      c.lineWidth = 2;
+      c.strokeStyle = mark;
+      c.stroke();
+    };
     const named = (text, x, y) => {
       c.font = "bold 13px system-ui, sans-serif";
       c.lineWidth = 4;
@@ -305,8 +312,6 @@ class Player {
       c.strokeText(text, x, y);
       c.fillStyle = ink;
       c.fillText(text, x, y);
-      c.strokeStyle = mark;
-      c.lineWidth = 2;
     };
     const now = this.times[this.at];
     for (const {name, time, x, y} of tracks) {
@@ -314,14 +319,14 @@ class Player {
       for (let i = 0; i < time.length && time[i] <= now * (1 + 1e-9); ++i) if (Number.isFinite(x[i]) && Number.isFinite(y[i])) places.push([x[i], y[i]]);
       if (places.length === 0) continue;
       this.trace(c, places, px, py);
-      c.stroke();
+      rimmed();
       const [a, b] = places.at(-1);
-      c.beginPath(); c.arc(px(a), py(b), 5, 0, 7); c.stroke();
+      c.beginPath(); c.arc(px(a), py(b), 5, 0, 7); rimmed();
       named(name, px(a) + 9, py(b) - 6);
     }
     marks.probes.forEach(({place: [a, b]}, i) => {
       const x = px(a), y = py(b);
-      c.beginPath(); c.moveTo(x - 5, y - 5); c.lineTo(x + 5, y + 5); c.moveTo(x - 5, y + 5); c.lineTo(x + 5, y - 5); c.stroke();
+      c.beginPath(); c.moveTo(x - 5, y - 5); c.lineTo(x + 5, y + 5); c.moveTo(x - 5, y + 5); c.lineTo(x + 5, y - 5); rimmed();
       named(`${i + 1}`, x + 8, y - 5);
     });
   }
