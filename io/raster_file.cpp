@@ -30,7 +30,10 @@ std::string in_small_letters(std::string text) {
 }  // namespace
 
 bool is_for_gdal(const fs::path& path) {
-  if (gdal_library().empty()) return false;
+  std::error_code ignored;
+  // a pipe can be read only once, a device may never end: read_bytes() knows how
+  if (gdal_library().empty() || (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)))
+    return false;
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   std::string head(4, '\0');
