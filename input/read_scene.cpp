@@ -521,7 +521,11 @@ void output_keys(Keys& keys, SceneFile& file) {
        "of frames and final.svg: averaged over a point's neighbourhood, as the grid sees it, "
        "or the points' own, with noise that no force shows"},
       mpm::stress_names, file.stress);
-  keys.choice({"colour", "-", "of final.svg"}, picture_field_names, file.colour);
+  if (keys.reader() != nullptr && file.scene.bodies.size() > 1) file.colour = PictureField::body;
+  keys.choice({"colour", "-",
+               "of the points of final.svg: a quantity, or a colour for each body, as where there "
+               "are several and nothing else is asked for"},
+              picture_field_names, file.colour);
 }
 
 }  // namespace

@@ -17,6 +17,8 @@ using Kind = mpm::Wall::Kind;
 constexpr double largest_width_px = 860.0, largest_height_px = 560.0;  // of the box on paper
 constexpr double arrow_px = 56.0;
 constexpr double outline_px = 1.6;
+constexpr std::size_t most_named =
+    12;  // of bodies, and of probes: a legend no taller than the panel
 
 double wall_of(const mpm::Scene& scene) {
   return 0.012 * std::max(scene.domain[0], scene.domain[1]);
@@ -419,6 +421,27 @@ Colour colour_of_body(std::size_t body) {
   return order[body % order.size()];
 }
 
+std::string legend_name_of(const mpm::Scene& scene, std::size_t body) {
+  if (body < most_named) return name_of(scene, body);
+  return body == most_named ? fmt::format("and {} more", scene.bodies.size() - most_named) : "";
+}
+
+void draw_bodies(Axes& axes, const mpm::Scene& scene, std::span<const std::int32_t> body,
+                 std::span<const double> xs, std::span<const double> ys, double diameter) {
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    Style style;
+    style.colour = colour_of_body(k);
+    style.diameter = diameter;
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < body.size(); ++i)
+      if (static_cast<std::size_t>(body[i]) == k) {
+        x.push_back(xs[i]);
+        y.push_back(ys[i]);
+      }
+    axes.points(legend_name_of(scene, k), x, y, style);
+  }
+}
+
 Axes& add_section(Figure& figure, const mpm::Scene& scene) {
   figure.panel_width_px = largest_width_px;
   figure.panel_height_px = largest_height_px;
@@ -442,8 +465,8 @@ void draw_surroundings(Axes& axes, const mpm::Scene& scene, const Section& secti
         probe.name += fmt::format(" (z = {:.4g} m)", probe.place[2]);
     return places;
   };
-  draw_places(axes, in_view(scene.probes), false, section.explained);
-  draw_places(axes, in_view(section.tracers), true, section.explained);
+  draw_places(axes, in_view(scene.probes), false);
+  draw_places(axes, in_view(section.tracers), true);
   draw_gravity(axes, scene);
 }
 
@@ -463,18 +486,22 @@ void draw_inflow(Axes& axes, const mpm::Scene& scene, const mpm::Inflow& inflow,
   axes.label({tip[0], tip[1], text});
 }
 
-void draw_places(Axes& axes, const std::vector<mpm::Probe>& places, bool tracers, bool explained) {
-  if (places.empty()) return;
-  std::vector<double> xs, ys;
-  for (const mpm::Probe& probe : places) {
-    xs.push_back(probe.place[0]);
-    ys.push_back(probe.place[1]);
-    axes.label({probe.place[0], probe.place[1], probe.name});
-  }
+void draw_places(Axes& axes, const std::vector<mpm::Probe>& places, bool tracers) {
   Style style = drawn_in(Colour::vermillion, outline_px);
   style.marker = tracers ? Marker::ring : Marker::cross;
   style.marker_px = 11.0;
-  axes.points(!explained ? "" : tracers ? "tracer" : "probe", xs, ys, style);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto& [x, y, z] = places[k].place;
+    axes.label({x, y, tracers ? places[k].name : fmt::format("{}", k + 1)});
+    std::string name;
+    if (tracers && k == 0)
+      name = "tracer";
+    else if (!tracers && k < most_named)
+      name = fmt::format("{}: {}", k + 1, places[k].name);
+    else if (!tracers && k == most_named)
+      name = fmt::format("{} to {}: more probes", k + 1, places.size());
+    axes.points(name, std::array{x}, std::array{y}, style);
+  }
 }
 
 }  // namespace repose::report
