@@ -170,7 +170,7 @@ class Player {
     if (!run.domain) return [x0, x1, y0, y1];
     if (run.marks?.plan) return [0, Math.max(run.domain[0], x1), Math.min(...run.marks.edges.map((e) => e.from[1])), run.marks.plan_height];
     // the air above the highest point is of no interest, unless something stands in it
-    const tops = (run.marks?.surfaces ?? []).flatMap((s) => s.outlines).filter((o) => o.length).map((o) => Math.max(...o.map((p) => p[1])));
+    const tops = (run.marks?.surfaces ?? []).flatMap((s) => s.outlines.flat()).filter((o) => o.length).map((o) => Math.max(...o.map((p) => p[1])));
     const top = Math.max(1.12 * y1, ...tops, ...(run.marks?.probes ?? []).map((p) => 1.05 * p.place[1]));
     return [Math.min(0, x0), Math.max(run.domain[0], x1), Math.min(0, y0), Math.max(Math.min(run.domain[1], top), y1)];
   }
@@ -255,8 +255,11 @@ class Player {
   }
 
   /// One line through places, or around them.
-  trace(c, places, px, py, closed = false) {
+  trace(c, places, px, py) {
     c.beginPath();
+    this.follow(c, places, px, py);
+  }
+  follow(c, places, px, py, closed = false) {
     places.forEach(([x, y], i) => (i ? c.lineTo(px(x), py(y)) : c.moveTo(px(x), py(y))));
     if (closed) c.closePath();
   }
@@ -287,11 +290,10 @@ class Player {
     c.setLineDash([]);
     c.lineWidth = 1.5;
     for (const {hollow, outlines} of marks.surfaces) {
-      const outline = outlines[Math.min(k, outlines.length - 1)];
-      if (outline.length < 3) continue;
-      this.trace(c, outline, px, py, true);
+      c.beginPath();
+      for (const ring of outlines[Math.min(k, outlines.length - 1)]) this.follow(c, ring, px, py, true);
       c.fillStyle = style.getPropertyValue("--line");
-      if (!hollow) c.fill();
+      if (!hollow) c.fill("evenodd");
       c.strokeStyle = ink;
       c.stroke();
     }

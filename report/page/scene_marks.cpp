@@ -50,11 +50,15 @@ Json surfaces_of(const mpm::Scene& scene, const Section& section, std::span<cons
   for (const mpm::Surface& surface : scene.surfaces) {
     Json outlines = Json::array();
     for (const double time : times) {
-      const mpm::Polygon outline =
-          surface.outline(time, section.middle(), {0.0, 0.0}, {scene.domain[0], scene.domain[1]});
-      Json corners = Json::array();
-      for (const auto& [x, y] : outline.corners) corners.push_back(place(scene, x, y));
-      outlines.push_back(std::move(corners));
+      Json rings = Json::array();
+      for (const mpm::Outline& outline :
+           surface.outlines(time, section.middle(), {0.0, 0.0}, {scene.domain[0], scene.domain[1]}))
+        for (const mpm::Polygon& ring : outline) {
+          Json corners = Json::array();
+          for (const auto& [x, y] : ring.corners) corners.push_back(place(scene, x, y));
+          rings.push_back(std::move(corners));
+        }
+      outlines.push_back(std::move(rings));
       if (!surface.moves()) break;
     }
     surfaces.push_back({{"name", surface.name},
