@@ -45,6 +45,24 @@ else()
   list(APPEND repose_missing "ceres/jet.h: apt-get install libceres-dev")
 endif()
 
+# Optional: maps of other kinds than the ESRI ASCII grid (io/raster_file.hpp). Loaded by its name where a
+# map asks for it, as the loader knows it (libgdal.so.32), and never linked.
+if(REPOSE_GDAL)
+  find_package(GDAL 3.0 QUIET)
+  if(GDAL_FOUND AND GDAL_LIBRARY AND CMAKE_OBJDUMP)
+    execute_process(COMMAND ${CMAKE_OBJDUMP} -p ${GDAL_LIBRARY} OUTPUT_VARIABLE repose_gdal_headers ERROR_QUIET)
+    if(repose_gdal_headers MATCHES "SONAME +([^ \n]+)")
+      set(repose_gdal_library ${CMAKE_MATCH_1})
+    endif()
+  endif()
+  if(repose_gdal_library)
+    message(STATUS "repose: GDAL ${GDAL_VERSION}, loaded as ${repose_gdal_library} where a map needs it")
+  else()
+    set(GDAL_FOUND FALSE)
+    message(STATUS "repose: no GDAL (apt-get install libgdal-dev): maps are ESRI ASCII grids")
+  endif()
+endif()
+
 if(repose_missing)
   list(JOIN repose_missing "\n  " repose_missing)
   message(FATAL_ERROR "repose needs packages that are not installed:\n  ${repose_missing}\n"

@@ -35,11 +35,15 @@ set(repose_public_headers
   mpm/grid/numerical_failure.hpp
   mpm/output/history.hpp
   mpm/output/rest_pressure.hpp
+  mpm/scene/box_tree.hpp
   mpm/scene/height_map.hpp
+  mpm/scene/nearest.hpp
+  mpm/scene/poly_line.hpp
   mpm/scene/prescribed.hpp
   mpm/scene/scene.hpp
   mpm/scene/solid.hpp
   mpm/scene/terrain.hpp
+  mpm/scene/triangle_mesh.hpp
   mpm/step/simulation.hpp
   mpm/study/estimate.hpp
   mpm/study/ill_posed_points.hpp

@@ -17,5 +17,9 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 # Pictures; and what a law of one's own is compiled with.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gnuplot-nox")
+if(GDAL_FOUND)  # loaded where a map needs it
+  string(REGEX REPLACE "^lib(.*)[.]so[.](.*)$" "lib\\1\\2" repose_gdal_package ${repose_gdal_library})
+  string(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS ", ${repose_gdal_package}")
+endif()
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, libeigen3-dev, libxsimd-dev, libceres-dev")
 include(CPack)

@@ -295,61 +295,75 @@ void body_initial_keys(Keys& keys, mpm::Body& body) {
                body.lithostatic);
 }
 
-void disc_keys(Keys& keys, mpm::Body& body, bool is_disc, bool space) {
-  constexpr std::string_view disc_only = "a centre and a radius belong to a disc or a cylinder";
-  constexpr std::string_view space_only = "base and height belong to a cylinder";
-  const bool cylinder = is_disc && space;
-  mpm::Disc disc = body.disc.value_or(mpm::Disc{});
-  double base = body.origin[1], height = body.size[1];
-  keys.pair(Key{"centre", "m", "of the disc; x and z of a cylinder's axis", {}, required}.only_if(
-                is_disc, disc_only),
-            disc.centre);
-  keys.number(
-      Key{"radius", "m", "of the disc or cylinder", positive, required}.only_if(is_disc, disc_only),
-      disc.radius);
-  keys.number(Key{"hole", "m", "radius of the hole (0)", not_negative}.only_if(is_disc, disc_only),
-              disc.hole);
-  keys.number(Key{"base", "m", "y of the cylinder's base (0)"}.only_if(cylinder, space_only), base);
-  keys.number(
-      Key{"height", "m", "of the cylinder", positive, required}.only_if(cylinder, space_only),
-      height);
-  if (keys.reader() == nullptr || !is_disc) return;
-  if (space)
-    set_cylinder(body, disc, base, height);
-  else
-    set_disc(body, disc);
+std::string_view shape_word(const mpm::Body& body, bool space) {
+  return body.release   ? "release"
+         : body.solid   ? shape_name(*body.solid)
+         : body.polygon ? "polygon"
+         : body.disc    ? space ? "cylinder" : "disc"
+                        : "box";
 }
 
-void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
-  static constexpr std::array<std::string_view, 3> in_space{"box", "cylinder", "release"};
-  static constexpr std::array<std::string_view, 3> in_plane{"box", "disc", "polygon"};
-  static constexpr std::array<std::string_view, 5> all{"box", "disc", "polygon", "cylinder",
-                                                       "release"};
+/// What the points of a body fill.
+void body_shape_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
+  static constexpr std::array<std::string_view, 9> described{
+      "box", "disc", "polygon", "cylinder", "release", "ball", "half_space", "curve", "mesh"};
+  static constexpr std::array<std::string_view, 6> in_plane{"box",  "disc",       "polygon",
+                                                            "ball", "half_space", "curve"};
+  static constexpr std::array<std::string_view, 6> in_space{"box",  "cylinder",   "release",
+                                                            "ball", "half_space", "mesh"};
   const bool space = axes == 3;
-  keys.text({"name", "-", "for messages"}, body.name);
-  std::size_t shape = body.polygon || body.release ? 2 : body.disc ? 1 : 0;
-  keys.word({"shape", "-", "of the body"},
-            keys.describes() ? std::span<const std::string_view>(all)
-            : space          ? std::span<const std::string_view>(in_space)
-                             : std::span<const std::string_view>(in_plane),
-            shape);
+  const auto words = keys.describes() ? std::span<const std::string_view>(described)
+                     : space          ? std::span<const std::string_view>(in_space)
+                                      : std::span<const std::string_view>(in_plane);
+  auto place = static_cast<std::size_t>(
+      std::find(words.begin(), words.end(), shape_word(body, space)) - words.begin());
+  keys.word({"shape", "-",
+             "of the body. The points of a box, a disc and an upright cylinder stand on its own "
+             "lattice; of anything else, cells of the grid's lattice are cut"},
+            words, place);
+  const std::string_view shape = words[place];
   constexpr std::string_view box_only = "origin and size belong to a box";
-  keys.place(Key{"origin", "m", "lower left corner of a box (0)"}.only_if(shape == 0, box_only),
+  keys.place(Key{"origin", "m", "lower left corner of a box (0)"}.only_if(shape == "box", box_only),
              axes, body.origin);
   keys.place(
       Key{"size", "m", "width, height and in space depth of a box", positive, required}.only_if(
-          shape == 0, box_only),
+          shape == "box", box_only),
       axes, body.size);
-  disc_keys(keys, body, shape == 1, space);
-  if (keys.reader() != nullptr) body.release = space && shape == 2;
-  mpm::Polygon polygon = body.polygon.value_or(mpm::Polygon{});
-  corners_key(keys,
-              Key{"corners", "m", "of a polygon, in order: [[x, y], …]", {}, required}.only_if(
-                  shape == 2 && !space, "corners belong to a polygon"),
-              polygon);
-  // without its corners, which is reported, it has no box to be set
-  if (keys.reader() != nullptr && shape == 2 && !space && polygon.corners.size() > 2)
-    set_polygon(body, polygon);
+  mpm::Solid solid = body.solid.value_or(mpm::Solid{});
+  if (body.polygon && !body.solid) solid.shape = *body.polygon;
+  mpm::Disc disc = body.disc.value_or(mpm::Disc{});
+  double base = body.origin[1], height = body.size[1];
+  shape_keys(keys, shape, axes, solid, &disc);
+  const bool tilted = std::holds_alternative<mpm::Cylinder>(solid.shape);
+  const bool upright = shape == "cylinder" && !tilted;
+  constexpr std::string_view upright_only = "base and height belong to a cylinder without axis";
+  keys.number(Key{"hole", "m", "radius of the hole of a disc or upright cylinder (0)", not_negative}
+                  .only_if(shape == "disc" || upright, "a hole belongs to a disc or a cylinder"),
+              disc.hole);
+  keys.number(Key{"base", "m", "y of the cylinder's base (0)"}.only_if(upright, upright_only),
+              base);
+  keys.number(
+      Key{"height", "m", "of the cylinder", positive, required}.only_if(upright, upright_only),
+      height);
+  solids_key(keys, {"within", "-", "a shape that the body is cut to: what lies in all of them"},
+             axes, body.within);
+  solids_key(keys, {"without", "-", "a shape that is cut out of the body"}, axes, body.without);
+  if (keys.reader() == nullptr) return;
+  body.release = shape == "release";
+  if (upright)
+    set_cylinder(body, disc, base, height);
+  else if (shape == "disc")
+    set_disc(body, disc);
+  else if (shape == "polygon")  // without its corners, which is reported, it has no box to be set
+    if (const auto& polygon = std::get<mpm::Polygon>(solid.shape); polygon.corners.size() > 2)
+      set_polygon(body, polygon);
+  if (shape != "box" && shape != "release" && shape != "disc" && shape != "polygon" && !upright)
+    body.solid = std::move(solid);  // its box is set with that of the scene
+}
+
+void body_keys(Keys& keys, mpm::Body& body, std::size_t axes) {
+  keys.text({"name", "-", "for messages"}, body.name);
+  body_shape_keys(keys, body, axes);
   keys.place({"velocity", "m/s", "at the start"}, axes, body.velocity);
   keys.number({"spin", "rad/s", "angular velocity at the start"}, body.spin);
   keys.number(
@@ -507,7 +521,11 @@ void output_keys(Keys& keys, SceneFile& file) {
        "of frames and final.svg: averaged over a point's neighbourhood, as the grid sees it, "
        "or the points' own, with noise that no force shows"},
       mpm::stress_names, file.stress);
-  keys.choice({"colour", "-", "of final.svg"}, picture_field_names, file.colour);
+  if (keys.reader() != nullptr && file.scene.bodies.size() > 1) file.colour = PictureField::body;
+  keys.choice({"colour", "-",
+               "of the points of final.svg: a quantity, or a colour for each body, as where there "
+               "are several and nothing else is asked for"},
+              picture_field_names, file.colour);
 }
 
 }  // namespace
@@ -586,6 +604,8 @@ SceneFile read_scene(InputFile& file) {
           "domain.size: the box is {:.10g} m high instead of {:.10g} m, a whole number of "
           "cells (h = {:.10g} m)",
           scene.domain[1], height, scene.h));
+    for (mpm::Body& body : scene.bodies)
+      if (body.solid) set_solid(body, mpm::Solid(*body.solid), scene.domain);
     try {
       mpm::validate(scene);
     } catch (const InputError& error) {

@@ -10,13 +10,13 @@
 namespace repose::input {
 
 /// What colours the points of final.svg.
-enum class PictureField { mises, density };
-constexpr std::array<std::string_view, 2> picture_field_names{"mises", "density"};
+enum class PictureField { mises, density, body };
+constexpr std::array<std::string_view, 3> picture_field_names{"mises", "density", "body"};
 
 struct SceneFile {
   mpm::Scene scene;
   mpm::Stress stress = mpm::Stress::averaged;  ///< of frames and final.svg
-  PictureField colour = PictureField::mises;
+  PictureField colour = PictureField::mises;   ///< unless given, body where there are several
   double checkpoint_interval = 60.0;  ///< wall-clock time between checkpoints, 0 for none [s]
   bool final_state = false;           ///< whether it leaves a final_state.h5
   std::vector<std::string> notes;     ///< what was made of the input that the user may not expect

@@ -7,69 +7,45 @@
 
 #include "input/key_info.hpp"
 #include "input/read_surface.hpp"
-#include "input/shipped_input.hpp"
+#include "input/source_file.hpp"
 #include "input/toml_reader.hpp"
 #include "input/toml_text.hpp"
 #include "io/atomic_file.hpp"
-#include "io/fingerprint.hpp"
+#include "io/coordinate_system.hpp"
+#include "io/raster_file.hpp"
 #include "io/seal.hpp"
-#include "io/table_error.hpp"
 
 namespace repose::input {
 namespace {
 
 namespace fs = std::filesystem;
-using File = mpm::Terrain::File;
+using File = mpm::SourceFile;
 
-constexpr std::size_t most_bytes = 1'000'000'000;  // as of a table (io/raw_table.cpp)
-
-/// The bytes of a map that a key names, beside the scene's file or one of those that come with
-/// repose; its name becomes one that holds from anywhere. Nothing, reported, if there is none.
-std::optional<std::string> read_map(TomlReader& table, std::string_view key, File& file) {
-  const Origin origin = table.file().origin(table.path_of(key));
-  fs::path path = file.name;
-  if (!origin.is_override() && path.is_relative())
-    path = fs::path(origin.source).parent_path() / path;
-  std::string bytes;
-  if (fs::exists(path)) {
-    try {
-      bytes = io::read_bytes(path, most_bytes);
-    } catch (const io::IoError& error) {
-      table.report(key, error.what());
-      return {};
-    }
-    file.name = fs::absolute(path).lexically_normal().string();
-  } else if (const auto shipped = shipped_map(file.name)) {
-    bytes = *shipped;
-  } else {
-    const std::string near = similar_file(path);
-    table.report(key, fmt::format("{}: there is no such file{}", path.string(),
-                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+/// A map of numbers, of whatever kind. Reported: a map that is not in metres, or counts from
+/// elsewhere than the ground's.
+std::optional<io::RasterFile> parsed_raster(TomlReader& table, std::string_view key, File& file,
+                                            const std::string& ground_crs) {
+  auto map = read_source(table, key, file, [&](const SourcePlace& place, std::string& content) {
+    io::RasterFile read = place.shipped ? io::raster_of_esri_grid(*place.shipped, file.name)
+                                        : io::read_raster(file.name);
+    content = read.content;
+    return read;
+  });
+  if (!map) return {};
+  if (const std::string why = io::why_not_metres(map->crs); !why.empty()) {
+    table.report(key, fmt::format("{}: {}; metres are needed: gdalwarp -t_srs EPSG:NUMBER, of a "
+                                  "projection for the place, makes such a map",
+                                  file.name, why));
     return {};
   }
-  const std::string content = io::fingerprint_of(bytes);
-  if (!file.content.empty() && file.content != content) {
-    table.report(key, fmt::format("{}: this is not the file that the scene was made with (its "
-                                  "content is {}, and was {})",
-                                  path.string(), content, file.content));
+  const std::string here = io::epsg_of(map->crs), there = io::epsg_of(ground_crs);
+  if (!here.empty() && !there.empty() && here != there) {
+    table.report(key, fmt::format("{}: its coordinate system is EPSG:{}, and that of the ground "
+                                  "EPSG:{}; gdalwarp -t_srs EPSG:{} makes them one",
+                                  file.name, here, there, there));
     return {};
   }
-  file.content = content;
-  return bytes;
-}
-
-/// What parse(bytes, name) makes of a map; its complaint is reported.
-template <class Parse>
-auto parsed(TomlReader& table, std::string_view key, File& file, Parse&& parse)
-    -> std::optional<decltype(parse(std::string(), std::string()))> {
-  const std::optional<std::string> bytes = read_map(table, key, file);
-  if (!bytes) return {};
-  try {
-    return parse(*bytes, file.name);
-  } catch (const io::TableError& error) {
-    table.report(key, error.what());
-    return {};
-  }
+  return map;
 }
 
 /// Reports the first cell without data, or below `least`.
@@ -91,28 +67,33 @@ bool is_whole(TomlReader& table, std::string_view key, const File& file, const i
 
 void ground_keys(Keys& keys, mpm::Terrain& terrain) {
   File& file = terrain.ground_file;
-  keys.text(
-      {"ground", "m", "elevations, an ESRI ASCII grid: a path seen from this file", {}, required},
-      file.name);
+  keys.text({"ground",
+             "m",
+             "elevations, a map: an ESRI ASCII grid or, where repose is built with GDAL, a GeoTIFF "
+             "or any "
+             "other raster of one band; a path seen from this file",
+             {},
+             required},
+            file.name);
   keys.text({"ground_content", "-",
-             "fingerprint of its bytes, written by repose: another file is refused"},
+             "fingerprint of its content, written by repose: another map is refused"},
             file.content);
   TomlReader* const table = keys.reader();
   if (table == nullptr || file.name.empty()) return;
-  if (auto map = parsed(*table, "ground", file, io::parse_esri_grid))
-    if (is_whole(*table, "ground", file, *map, -HUGE_VAL)) terrain.ground_map = std::move(*map);
-  std::error_code ignored;
-  const fs::path crs = fs::path(file.name).replace_extension(".prj");
-  if (fs::exists(crs, ignored)) terrain.crs = io::read_bytes(crs, most_bytes);
+  auto map = parsed_raster(*table, "ground", file, "");
+  if (!map || !is_whole(*table, "ground", file, map->raster, -HUGE_VAL)) return;
+  terrain.ground_map = std::move(map->raster);
+  terrain.crs = std::move(map->crs);
+  terrain.geotiff = map->through_gdal;
 }
 
 void release_keys(Keys& keys, mpm::Terrain& terrain) {
   File& file = terrain.release_file;
   keys.text({"release", "m",
-             "what a body with shape = \"release\" is: vertical depths, an ESRI ASCII grid, or "
+             "what a body with shape = \"release\" is: vertical depths, a map as of the ground, or "
              "regions, polygons in a .geojson file"},
             file.name);
-  keys.text(Key{"release_content", "-", "fingerprint of its bytes, written by repose"}.only_if(
+  keys.text(Key{"release_content", "-", "fingerprint of its content, written by repose"}.only_if(
                 !file.name.empty() || keys.describes(), "a content without a release"),
             file.content);
   const bool regions =
@@ -134,14 +115,15 @@ void release_keys(Keys& keys, mpm::Terrain& terrain) {
                     "a region has no property \"depth\": terrain.release_depth "
                     "gives that of all that have none");
     terrain.release_map = std::move(*read);
-  } else if (auto map = parsed(*table, "release", file, io::parse_esri_grid)) {
-    for (double& depth : map->values)
+  } else if (auto map = parsed_raster(*table, "release", file, terrain.crs)) {
+    std::vector<double>& depths = map->raster.values;
+    for (double& depth : depths)
       if (std::isnan(depth)) depth = 0.0;
-    if (!is_whole(*table, "release", file, *map, 0.0)) return;
-    if (std::none_of(map->values.begin(), map->values.end(), [](double d) { return d > 0.0; }))
+    if (!is_whole(*table, "release", file, map->raster, 0.0)) return;
+    if (std::none_of(depths.begin(), depths.end(), [](double d) { return d > 0.0; }))
       table->report("release", fmt::format("{}: no cell of the map has a depth", file.name));
     else
-      terrain.release_map = std::move(*map);
+      terrain.release_map = std::move(map->raster);
   }
 }
 
@@ -156,16 +138,16 @@ void read_friction(TomlReader& table, mpm::Terrain& terrain) {
   }
   File& file = terrain.friction_file;
   file.name = given.as_string()->get();
-  auto map = parsed(table, "friction", file, io::parse_esri_grid);
-  if (!map || !is_whole(table, "friction", file, *map, 0.0)) return;
-  const io::Raster& ground = terrain.ground_map;
-  const double slack = map->cell;
+  auto read = parsed_raster(table, "friction", file, terrain.crs);
+  if (!read || !is_whole(table, "friction", file, read->raster, 0.0)) return;
+  const io::Raster &ground = terrain.ground_map, &map = read->raster;
+  const double slack = map.cell;
   if (ground.columns > 0 &&
-      (map->west > ground.west + slack || map->south > ground.south + slack ||
-       map->east() < ground.east() - slack || map->north() < ground.north() - slack))
+      (map.west > ground.west + slack || map.south > ground.south + slack ||
+       map.east() < ground.east() - slack || map.north() < ground.north() - slack))
     table.report("friction",
                  fmt::format("{}: the map does not cover that of the ground", file.name));
-  terrain.friction_raster = std::move(*map);
+  terrain.friction_raster = std::move(read->raster);
 }
 
 void contact_keys(Keys& keys, mpm::Terrain& terrain) {
@@ -181,12 +163,12 @@ void contact_keys(Keys& keys, mpm::Terrain& terrain) {
   TomlReader* const table = keys.reader();
   const bool rubs = terrain.contact == Contact::friction;
   keys.text(
-      Key{"friction_content", "-", "fingerprint of the map's bytes, written by repose"}.only_if(
+      Key{"friction_content", "-", "fingerprint of the map's content, written by repose"}.only_if(
           table != nullptr || keys.describes() || terrain.friction_raster.has_value(), ""),
       terrain.friction_file.content);
   keys.value(
       Key{"friction", "-",
-          "Coulomb coefficient of a contact that may part, or an ESRI ASCII grid of it; or a kind"}
+          "Coulomb coefficient of a contact that may part, or a map of it; or a kind"}
           .only_if(table != nullptr || keys.describes() || rubs, ""),
       [&](TomlReader& reader) { read_friction(reader, terrain); },
       [&] {

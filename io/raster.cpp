@@ -16,7 +16,6 @@
 namespace repose::io {
 namespace {
 
-constexpr double most_cells = 1e8;
 constexpr double no_data = -9999.0;
 
 /// The words of a text, with the row each stands in.
@@ -115,12 +114,12 @@ Header read_header(Words& words, const std::string& file) {
                        "an ESRI ASCII grid with square cells is needed; gdal_translate -of AAIGrid "
                        "-co FORCE_CELLSIZE=YES writes one");
   for (const auto& [key, n] : {std::pair{"ncols", *header.columns}, {"nrows", *header.rows}})
-    if (!(n >= 1.0 && n <= most_cells) || n != std::floor(n))
+    if (!(n >= 1.0 && n <= most_raster_cells) || n != std::floor(n))
       throw TableError(file, 0, "", fmt::format("{} = {} is no number of cells", key, n), "");
-  if (*header.columns * *header.rows > most_cells)
+  if (*header.columns * *header.rows > most_raster_cells)
     throw TableError(file, 0, "",
                      fmt::format("{} cells are more than memory is likely to hold ({})",
-                                 *header.columns * *header.rows, most_cells),
+                                 *header.columns * *header.rows, most_raster_cells),
                      "cut out what the scene needs: gdal_translate -projwin");
   if (!(*header.cell > 0.0) || !std::isfinite(*header.cell))
     throw TableError(file, 0, "", fmt::format("cellsize = {} must be > 0", *header.cell), "");
@@ -134,7 +133,8 @@ Header read_header(Words& words, const std::string& file) {
 Raster parse_esri_grid(std::string_view text, const std::string& name) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   if (text.starts_with("II*") || text.starts_with("MM"))
-    throw TableError(name, 0, "", "this is a TIFF file",
+    throw TableError(name, 0, "",
+                     "this is a TIFF file, which repose reads where it is built with GDAL",
                      "gdal_translate -of AAIGrid writes it as an ESRI ASCII grid");
   Words words(text);
   const Header header = read_header(words, name);

@@ -25,8 +25,11 @@ struct Raster {
   double at(std::size_t row, std::size_t column) const { return values[row * columns + column]; }
 };
 
+/// What memory is likely to hold.
+constexpr double most_raster_cells = 1e8;
+
 /// Errors: TableError with the row of the file, for a header that is not one, more or fewer numbers
-/// than it says, cells that are not square, and more of them than 1e8.
+/// than it says, cells that are not square, and more of them than most_raster_cells.
 Raster parse_esri_grid(std::string_view text, const std::string& name);
 
 /// `digits` after the point; where there is no data stands −9999.

@@ -31,15 +31,19 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 75> outputs{"manifest.json",
+constexpr std::array<std::string_view, 79> outputs{"manifest.json",
                                                    "largest_depth.asc",
                                                    "largest_depth.prj",
+                                                   "largest_depth.tif",
                                                    "largest_speed.asc",
                                                    "largest_speed.prj",
+                                                   "largest_speed.tif",
                                                    "arrival_time.asc",
                                                    "arrival_time.prj",
+                                                   "arrival_time.tif",
                                                    "deposit.asc",
                                                    "deposit.prj",
+                                                   "deposit.tif",
                                                    "outlines.geojson",
                                                    "summary.json",
                                                    "checkpoint_previous.h5",

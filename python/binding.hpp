@@ -14,6 +14,7 @@
 
 #include "input/input_file.hpp"
 #include "io/exit_code.hpp"
+#include "io/raster.hpp"
 
 namespace repose::python {
 
@@ -42,6 +43,18 @@ template <class T>
 py::array_t<T> array_of(std::vector<T> values) {
   const auto count = static_cast<py::ssize_t>(values.size());
   return array_of(std::move(values), {count});
+}
+
+/// What repose.Map is made of.
+inline py::dict raster_of(const io::Raster& raster, const std::string& crs) {
+  py::dict map;
+  map["values"] = array_of(raster.values, {static_cast<py::ssize_t>(raster.rows),
+                                           static_cast<py::ssize_t>(raster.columns)});
+  map["west"] = raster.west;
+  map["south"] = raster.south;
+  map["cell"] = raster.cell;
+  map["crs"] = crs;
+  return map;
 }
 
 /// Calls f, which reads `input` and what it names. What a library says against a key becomes the

@@ -1,6 +1,8 @@
-/// Frames of result folders.
+/// Frames and maps of result folders.
 #include "binding.hpp"
 #include "io/frame_reader.hpp"
+#include "io/raster_file.hpp"
+#include "io/table_error.hpp"
 
 namespace repose::python {
 
@@ -40,6 +42,20 @@ void bind_results(py::module_& module) {
         return all;
       },
       py::arg("path"), "A frame: time_s, position_m and its fields, by name.");
+  module.def(
+      "read_raster",
+      [](const std::string& path) {
+        try {
+          const io::RasterFile file = [&] {
+            const py::gil_scoped_release released;
+            return io::read_raster(path);
+          }();
+          return raster_of(file.raster, file.crs);
+        } catch (const io::TableError& error) {
+          throw input::BadInput({error.what()});
+        }
+      },
+      py::arg("path"), "A map: values, west, south, cell, crs.");
 }
 
 }  // namespace repose::python

@@ -10,6 +10,7 @@
 #include "mpm/study/estimate.hpp"
 #include "report/picture/heap_picture.hpp"
 #include "study/run/run_record.hpp"
+#include "study/run/terrain_result.hpp"
 
 namespace repose::python {
 namespace {
@@ -84,11 +85,10 @@ class Simulation {
   }
 
   py::dict diagnostics() const {
-    const std::size_t dimensions = simulation_->scene().dimensions();
-    const std::vector<std::string> names = study::series_columns(dimensions);
+    const std::vector<std::string> names = study::series_columns(simulation_->scene());
     const std::vector<double> values = [&] {
       const py::gil_scoped_release released;
-      return study::series_values(simulation_->diagnostics(), dimensions);
+      return study::series_values(simulation_->diagnostics(), *simulation_);
     }();
     py::dict row;
     for (std::size_t k = 0; k < names.size(); ++k) row[py::str(names[k])] = values[k];
@@ -98,6 +98,20 @@ class Simulation {
   py::tuple profile() const {
     mpm::Simulation::Profile p = simulation_->profile();
     return py::make_tuple(array_of(std::move(p.x_m)), array_of(std::move(p.depth_m)));
+  }
+
+  py::dict maps() const {
+    const study::TerrainMaps maps = [&] {
+      const py::gil_scoped_release released;
+      return study::terrain_maps(*simulation_);
+    }();
+    const std::string& crs = simulation_->scene().terrain->crs;
+    py::dict all;
+    all["largest_depth"] = raster_of(maps.largest_depth_m, crs);
+    all["largest_speed"] = raster_of(maps.largest_speed, crs);
+    all["arrival_time"] = raster_of(maps.arrival_s, crs);
+    all["deposit"] = raster_of(maps.deposit_m, crs);
+    return all;
   }
 
   void set_gravity(double gravity, double tilt_deg) {
@@ -207,6 +221,7 @@ void bind_simulation(py::module_& module) {
       .def("nodes", &Simulation::nodes)
       .def("diagnostics", &Simulation::diagnostics)
       .def("profile", &Simulation::profile)
+      .def("maps", &Simulation::maps)
       .def("set_gravity", &Simulation::set_gravity, py::arg("gravity"), py::arg("tilt_deg"))
       .def("set_wall", &Simulation::set_wall, py::arg("edge"), py::arg("input"))
       .def("save", &Simulation::save, py::arg("path"))

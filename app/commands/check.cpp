@@ -71,6 +71,7 @@ io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options, 
                     {"kind", "scene"},
                     {"name", scene.name},
                     {"points", estimate.points},
+                    {scene.dimensions() == 3 ? "volume_m3" : "volume_m3_per_m", estimate.volume},
                     {"live_cells", estimate.live_cells},
                     {"first_dt_s", estimate.first_dt_s},
                     {"steps", estimate.steps},
@@ -85,12 +86,14 @@ io::ExitCode check_scene(input::InputFile& input, const CommonOptions& options, 
     fmt::print(
         "{}: a sound scene, \"{}\"\n"
         "  points      {}\n"
+        "  volume      {:.6g} m³{}\n"
         "  live cells  {} of {} at the start\n"
         "  first step  {:.3g} s{}\n"
         "  steps       about {} for {:g} s\n"
         "  memory      about {:.2g} MB\n"
         "  run time    about {}\n",
         input.name(), scene.name, io::grouped(static_cast<double>(estimate.points)),
+        estimate.volume, scene.dimensions() == 3 ? "" : " per m",
         io::grouped(static_cast<double>(estimate.live_cells)), cells_of(scene), estimate.first_dt_s,
         scene.dt ? ", fixed" : "", io::grouped(io::two_digits(estimate.steps)), scene.end_time,
         estimate.memory_MB,

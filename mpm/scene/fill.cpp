@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include "mpm/scene/cut_body.hpp"
 #include "mpm/scene/restitution.hpp"
+#include "mpm/scene/spans.hpp"
 
 namespace repose::mpm {
 namespace {
@@ -22,47 +24,6 @@ auto within(const std::string& table, F&& f) {
   } catch (const InputError& e) {
     throw InputError(table + "." + e.key(), e.what());
   }
-}
-
-/// A part of a body over a place, from a height to another [m].
-struct Span {
-  double low = 0.0, high = 0.0;
-};
-
-/// What of a body stands over (x, z), from below; z counts in space only.
-std::vector<Span> spans_over(const Scene& scene, const Body& body, double x, double z) {
-  const auto reaches = [&](std::size_t axis, double at) {
-    return at >= body.origin[axis] && at < body.origin[axis] + body.size[axis];
-  };
-  if (!reaches(0, x) || (scene.dimensions() == 3 && !reaches(2, z))) return {};
-  std::vector<Span> spans;
-  if (body.release) {
-    const double half = 0.5 * point_spacing(scene);
-    const double depth =
-        scene.terrain->release->volume_over({x - half, z - half}, {x + half, z + half}) /
-        (4.0 * half * half);
-    const double ground = scene.terrain->ground->height(x, z);
-    if (depth > 0.0) spans.push_back({ground, ground + depth});
-    return spans;
-  }
-  if (body.polygon) {
-    std::vector<double> heights;
-    const auto& c = body.polygon->corners;
-    for (std::size_t i = 0, j = c.size() - 1; i < c.size(); j = i++)
-      if ((c[i][0] > x) != (c[j][0] > x))
-        heights.push_back(c[j][1] + (x - c[j][0]) / (c[i][0] - c[j][0]) * (c[i][1] - c[j][1]));
-    std::sort(heights.begin(), heights.end());
-    for (std::size_t k = 0; k + 1 < heights.size(); k += 2)
-      spans.push_back({heights[k], heights[k + 1]});
-    return spans;
-  }
-  if (body.disc && scene.dimensions() == 2) return {};  // it touches in a point
-  if (body.disc) {
-    const double r = std::hypot(x - body.disc->centre[0], z - body.disc->centre[1]);
-    if (r < body.disc->hole || r >= body.disc->radius) return {};
-  }
-  spans.push_back({body.origin[1], body.origin[1] + body.size[1]});
-  return spans;
 }
 
 /// The weight upon the places of a body: of what stands over them without a gap, from the place up
@@ -117,6 +78,7 @@ class Overburden {
     const double top = part.span.high;
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i)
       for (const Span& span : spans_over(scene_, scene_.bodies[i], x, z)) {
+        if (scene_.bodies[i].disc && scene_.dimensions() == 2) continue;  // it touches in a point
         const bool itself = i == part.body && span.high <= top;
         if (itself || std::abs(span.low - top) > gap()) continue;
         part = {i, span};
@@ -316,7 +278,8 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
       origin[i] = first * spacing[i];
       lattice[i] = std::llround(std::ceil((body.origin[i] + body.size[i]) / spacing[i]) - first);
     }
-  if (!body.release) points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
+  const bool in_rows = !body.release && (!is_cut(body) || is_plain_polygon(body));
+  if (in_rows) points.reserve(static_cast<std::size_t>(lattice[0] * lattice[1] * lattice[2]));
   const std::vector<Surface> surfaces = rigid_surfaces(scene);
   double volume = 1.0;
   for (std::size_t i = 0; i < dim; ++i) volume *= spacing[i];
@@ -372,7 +335,19 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
         }
       }
   }
-  for (std::int64_t j = 0; !body.release && j < lattice[1]; ++j) {
+  if (!body.release && !in_rows) {
+    const std::vector<Share> shares = shares_of(scene, body);
+    points.reserve(shares.size());
+    for (const Share& share : shares) {
+      const Position centroid = share.centroid();
+      std::array<double, dim> x;
+      for (std::size_t m = 0; m < dim; ++m) x[m] = centroid[m];
+      if (behind_a_surface<dim>(surfaces, x)) continue;
+      const auto vertical = [&] { return weight.at(*points.material, x[0], x[1], centroid[2]); };
+      put(x, body.lithostatic ? under(within("initial", vertical)) : uniform, share.volume);
+    }
+  }
+  for (std::int64_t j = 0; in_rows && j < lattice[1]; ++j) {
     const double y = coordinate(1, j);
     InitialPoint at = uniform;
     double known = std::numeric_limits<double>::quiet_NaN();  // of which `at` is made
@@ -404,9 +379,10 @@ PointsOf<dim> fill(const Body& body, const Scene& scene, std::int64_t first_id) 
       }
   }
   if (points.count == 0)
-    throw InputError(body.polygon ? "corners"
-                     : body.disc  ? "centre"
-                                  : "origin",
+    throw InputError(body.solid     ? "shape"
+                     : body.polygon ? "corners"
+                     : body.disc    ? "centre"
+                                    : "origin",
                      "all of the body lies within rigid surfaces: it has no points");
   // solid depths are measured at the loosest density the law knows by name, else as filled
   points.rho_0 = points[Layout<dim>::rho][points.count - 1];

@@ -61,6 +61,81 @@ void set_polygon(Body& body, const Polygon& polygon) {
   }
 }
 
+void set_solid(Body& body, const Solid& solid, const std::array<double, 3>& domain) {
+  body.solid = solid;
+  const auto bound = [&](const Position& low, const Position& high, std::size_t axes) {
+    for (std::size_t k = 0; k < axes; ++k) {
+      body.origin[k] = low[k];
+      body.size[k] = high[k] - low[k];
+    }
+  };
+  const std::size_t axes = domain[2] > 0.0 ? 3 : 2;
+  if (const auto* const ball = std::get_if<Ball>(&solid.shape)) {
+    const auto& [x, y, z] = ball->centre;
+    const double r = ball->radius;
+    bound({x - r, y - r, z - r}, {x + r, y + r, z + r}, axes);
+  } else if (const auto* const cylinder = std::get_if<Cylinder>(&solid.shape)) {
+    // an end is a disc, which reaches R √(1 − a_k²) along an axis
+    const Position& a = cylinder->axis;
+    const double length = std::hypot(a[0], a[1], a[2]);
+    Position low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double along = a[k] / length, from = cylinder->point[k],
+                   to = from + along * cylinder->length,
+                   across = cylinder->radius * std::sqrt(std::max(0.0, 1.0 - along * along));
+      low[k] = std::min(from, to) - across;
+      high[k] = std::max(from, to) + across;
+    }
+    bound(low, high, axes);
+  } else if (const auto* const mesh = std::get_if<Mesh>(&solid.shape)) {
+    bound(mesh->mesh->bounds().low, mesh->mesh->bounds().high, axes);
+  } else if (const auto* const curve = std::get_if<Curve>(&solid.shape)) {
+    set_polygon(body, {curve->line->points()});
+  } else if (const auto* const plane = std::get_if<HalfSpace>(&solid.shape)) {
+    if (axes == 3) {
+      const TriangleMesh piece = piece_of(*plane, {}, domain);
+      if (piece.size() > 0) bound(piece.bounds().low, piece.bounds().high, axes);
+      return;
+    }
+    Surface surface;
+    surface.solid = solid;
+    const std::vector<Outline> outlines =
+        surface.outlines(0.0, 0.0, {0.0, 0.0}, {domain[0], domain[1]});
+    if (!outlines.empty()) set_polygon(body, outlines.front().front());
+  }
+}
+
+bool is_cut(const Body& body) {
+  return body.polygon || body.solid || !body.within.empty() || !body.without.empty();
+}
+
+bool is_plain_polygon(const Body& body) {
+  return body.polygon && body.within.empty() && body.without.empty();
+}
+
+bool is_box(const Body& body) { return !body.disc && !body.release && !is_cut(body); }
+
+double volume_of(const Scene& scene, const Body& body) {
+  using std::numbers::pi;
+  const bool space = scene.dimensions() == 3;
+  if (body.release) return scene.terrain->release->volume();
+  if (body.polygon) return piece_of(*body.polygon).area;
+  if (body.solid) {
+    const auto& shape = body.solid->shape;
+    if (const auto* const ball = std::get_if<Ball>(&shape))
+      return space ? 4.0 / 3.0 * pi * std::pow(ball->radius, 3) : pi * std::pow(ball->radius, 2);
+    if (const auto* const cylinder = std::get_if<Cylinder>(&shape))
+      return pi * std::pow(cylinder->radius, 2) * cylinder->length;
+    if (const auto* const mesh = std::get_if<Mesh>(&shape)) return mesh->mesh->volume();
+    if (const auto* const plane = std::get_if<HalfSpace>(&shape))
+      return piece_of(*plane, {}, scene.domain).volume();
+  }
+  double volume = 1.0;
+  for (std::size_t k = 0; k < scene.dimensions(); ++k) volume *= body.size[k];
+  if (body.disc) volume *= pi / 4.0 * (1.0 - std::pow(body.disc->hole / body.disc->radius, 2.0));
+  return volume;
+}
+
 void set_release(Body& body, const Terrain& terrain) {
   body.release = true;
   const Release& release = *terrain.release;
@@ -104,13 +179,8 @@ std::vector<Surface> rigid_surfaces(const Scene& scene) {
 }
 
 double expected_points(const Scene& scene, const Body& body) {
-  const double spacing = point_spacing(scene);
-  if (body.release) return scene.terrain->release->volume() / (spacing * spacing * spacing);
-  double points = 1.0;
-  for (std::size_t k = 0; k < scene.dimensions(); ++k) points *= body.size[k] / spacing;
-  if (body.disc)
-    points *= std::numbers::pi / 4.0 * (1.0 - std::pow(body.disc->hole / body.disc->radius, 2.0));
-  return points;
+  return volume_of(scene, body) /
+         std::pow(point_spacing(scene), static_cast<double>(scene.dimensions()));
 }
 
 Stretch stretch_of(const Scene& scene, const Inflow& inflow) {
@@ -139,8 +209,8 @@ bool seeks_equilibrium(const Scene& scene) {
   if (scene.equilibrium) return *scene.equilibrium;
   const auto& bodies = scene.bodies;
   return scene.tilt_deg == 0.0 && !has_edges_in_parts(scene) &&
-         (bodies.size() > 1 || std::any_of(bodies.begin(), bodies.end(),
-                                           [](const Body& b) { return b.polygon.has_value(); })) &&
+         (bodies.size() > 1 ||
+          std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return is_cut(b); })) &&
          std::all_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.lithostatic; });
 }
 

@@ -81,6 +81,11 @@ struct Body {
   std::optional<Polygon> polygon;
   /// What the scene's terrain releases, in space; origin and size bound it: set_release()
   bool release = false;
+  /// Only what of its lattice cells lies in it: a ball, a half-space, a tilted cylinder, a closed
+  /// curve or a mesh; origin and size bound it: set_solid()
+  std::optional<Solid> solid;
+  /// Only what of its lattice cells lies in each of these, and in none of those
+  std::vector<Solid> within, without;
   std::array<double, 3> velocity{};  ///< initial velocity [m/s]
   double spin = 0.0;  ///< initial angular velocity about z, through the body's centre [rad/s]
   LawSpec law;
@@ -240,6 +245,25 @@ void set_cylinder(Body& body, const Disc& disc, double base, double height);
 /// Makes a body a polygon: its origin and size become those of the box around it.
 void set_polygon(Body& body, const Polygon& polygon);
 
+/// Makes a body what a solid that is not hollow holds: its origin and size become those of the box
+/// around it, and of a half-space around what of it lies in the box of the scene. In the plane a
+/// half-space and a curve make it a polygon too.
+void set_solid(Body& body, const Solid& solid, const std::array<double, 3>& domain);
+
+/// Whether its points are those of a box on the lattice.
+bool is_box(const Body& body);
+
+/// Whether its lattice cells are cut, so that its mass is that of its volume, and lie on the grid's
+/// own lattice.
+bool is_cut(const Body& body);
+
+/// A polygon that nothing else cuts.
+bool is_plain_polygon(const Body& body);
+
+/// Volume of a body, in the plane its area, before `within` and `without` and rigid surfaces cut it
+/// [m³, m²]: for a disc and an upright cylinder that of the shape, not of its points.
+double volume_of(const Scene& scene, const Body& body);
+
 /// Makes a body what the terrain releases, on its ground: its origin and size become those of the
 /// box around it.
 void set_release(Body& body, const Terrain& terrain);
@@ -253,7 +277,7 @@ void fit_to_terrain(Scene& scene);
 /// The surfaces and the ground of the terrain.
 std::vector<Surface> rigid_surfaces(const Scene& scene);
 
-/// About how many points a body has: its volume over theirs, rigid surfaces aside.
+/// About how many points a body has: volume_of() over theirs.
 double expected_points(const Scene& scene, const Body& body);
 
 /// Points of a body along x, y and z (1 in the plane): its size over point_spacing(), which

@@ -4,16 +4,18 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "mpm/scene/height_map.hpp"
+#include "mpm/scene/nearest.hpp"
+#include "mpm/scene/poly_line.hpp"
+#include "mpm/scene/triangle_mesh.hpp"
 
 namespace repose::mpm {
-
-using Position = std::array<double, 3>;  ///< x, y and in space z [m]
 
 /// All that lies behind a plane (in the plane a line), on the side its normal points away from.
 struct HalfSpace {
@@ -32,6 +34,31 @@ struct Polygon {
   std::vector<std::array<double, 2>> corners;  ///< in either sense of rotation [m]
 };
 
+/// Round about a line, in space.
+struct Cylinder {
+  Position point{};              ///< on the axis; of one with a length, the middle of an end [m]
+  Position axis{0.0, 1.0, 0.0};  ///< of any length, from there towards the other end
+  double radius = 0.0;           ///< [m]
+  double length = HUGE_VAL;      ///< endless to both sides without one [m]
+};
+
+/// What a line from a table surrounds or, open, all that lies below it; in space a prism along z
+/// without end.
+struct Curve {
+  std::shared_ptr<const PolyLine> line;
+  SourceFile file{};
+  std::string x = "x", y = "y";  ///< columns of the table
+  std::string unit{};            ///< of both, where the table names none
+};
+
+/// What a surface of triangles from a file surrounds, in space.
+struct Mesh {
+  std::shared_ptr<const TriangleMesh> mesh;
+  SourceFile file{};
+  double scale = 1.0;  ///< of the file's lengths [m]
+  Position shift{};    ///< of what is scaled [m]
+};
+
 /// All that lies below a surface of heights, in space.
 struct Ground {
   std::shared_ptr<const HeightMap> map;
@@ -48,30 +75,36 @@ Piece piece_of(const Polygon& polygon);
 Polygon clipped(const Polygon& polygon, const std::array<double, 2>& low,
                 const std::array<double, 2>& high);
 
+/// What of a half-space lies in the box between two corners; without triangles if that is nothing.
+TriangleMesh piece_of(const HalfSpace& plane, const Position& low, const Position& high);
+
 /// Whether two polygons have more in common than their edges, deeper than `slack` [m].
 bool overlap(const Polygon& a, const Polygon& b, double slack);
 
 struct Solid {
-  std::variant<HalfSpace, Ball, Polygon, Ground> shape;
+  std::variant<HalfSpace, Ball, Polygon, Curve, Cylinder, Mesh, Ground> shape;
   bool hollow = false;  ///< rigid is what lies outside
 };
 
-/// Distance from the surface, negative in the rigid part, and its gradient, which points away from
-/// the rigid part.
-struct Nearest {
-  double distance = 0.0;  ///< [m]
-  Position normal{};
-};
 Nearest nearest(const Solid& solid, const Position& x);
 /// Whether the surface is certainly farther from x than `radius` [m]; quicker than nearest().
 bool is_beyond(const Solid& solid, const Position& x, double radius);
 /// Whether x lies in the rigid part; quicker than nearest().
 bool holds(const Solid& solid, const Position& x);
 
-/// How the normal turns from place to place: dn = S dx, S_ij = ∂²φ/∂x_i∂x_j [1/m]. 0 of planes and
-/// polygons; of ground, over a length of `over` to either side.
+/// How the normal turns from place to place: dn = S dx, S_ij = ∂²φ/∂x_i∂x_j [1/m]. 0 of planes,
+/// polygons and the ends of a cylinder; of curves, meshes and ground, whose points stand for
+/// something that bends between them, over a length of `over` to either side.
 using Bending = std::array<std::array<double, 3>, 3>;
 Bending bending(const Solid& solid, const Position& x, double over);
+
+/// Of a part of something: the outline around it, and those of holes in it.
+using Outline = std::vector<Polygon>;
+/// Where a signed distance is negative in the rectangle from `low` to `high`, by its level line on
+/// a lattice of about 400 places along the longer side.
+std::vector<Outline> outlines_of(const std::function<double(double, double)>& distance,
+                                 const std::array<double, 2>& low,
+                                 const std::array<double, 2>& high);
 
 /// A rigid surface, at rest or moving as one.
 struct Surface {
@@ -93,6 +126,8 @@ struct Surface {
   double stops = HUGE_VAL;           ///< and until this one [s]
 
   bool moves() const;
+  /// Whether a look at it costs more than a few operations: a curve or a mesh.
+  bool is_complex() const;
   /// At x and a time: the distance and normal, and the velocity of what is rigid there.
   Nearest nearest_at(double time, const Position& x) const;
   bool is_beyond_at(double time, const Position& x, double radius) const;
@@ -100,10 +135,10 @@ struct Surface {
   double friction_at(const Position& x) const;
   Bending bending_at(double time, const Position& x, double over) const;
   std::array<double, 3> velocity_at(double time, const Position& x) const;
-  /// Its outline in the plane z at a time, closed, within the rectangle from `low` to `high`; empty
-  /// where there is none of it. A hollow one has the outline of its hole.
-  Polygon outline(double time, double z, const std::array<double, 2>& low,
-                  const std::array<double, 2>& high) const;
+  /// Its outlines in the plane z at a time, closed, within the rectangle from `low` to `high`; none
+  /// where there is nothing of it. A hollow one has those of its hole.
+  std::vector<Outline> outlines(double time, double z, const std::array<double, 2>& low,
+                                const std::array<double, 2>& high) const;
 
  private:
   double moved_for(double time) const;

@@ -44,14 +44,11 @@ class Release {
 };
 
 struct Terrain {
-  /// A file that it was read from, as the scene names it, and the fingerprint of its bytes.
-  struct File {
-    std::string name, content;
-  };
-  File ground_file, release_file, friction_file;
+  SourceFile ground_file, release_file, friction_file;
 
   io::Raster ground_map;  ///< elevations [m]
-  std::string crs;        ///< coordinate system of the maps, content of the .prj file beside it
+  std::string crs;        ///< coordinate system of the maps, as WKT
+  bool geotiff = false;   ///< the ground was read through GDAL: maps of results are GeoTIFFs
   std::variant<std::monostate, io::Raster, std::vector<io::Region>> release_map;
   std::optional<double> release_depth;  ///< of regions without a depth of their own [m]
   Surface::Contact contact = Surface::Contact::no_slip;

@@ -5,6 +5,7 @@
 
 #include "mpm/scene/fill.hpp"
 #include "mpm/scene/scene.hpp"
+#include "mpm/scene/spans.hpp"
 
 namespace repose::mpm {
 namespace {
@@ -266,6 +267,7 @@ bool fits(const Scene& scene, double h, bool with_bodies) {
   if (!is_whole_multiple(scene.domain[0], h)) return false;
   const double spacing = h / points_per_edge(scene);
   return !with_bodies || std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const Body& b) {
+    if (is_cut(b) || b.release) return true;
     return is_whole_multiple(b.size[0], spacing) && is_whole_multiple(b.size[1], spacing) &&
            (scene.dimensions() == 2 || is_whole_multiple(b.size[2], spacing));
   });
@@ -386,7 +388,7 @@ void check_geometry(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t k = 0; k < scene.dimensions(); ++k) {
       const double size = scene.bodies[i].size[k];
-      if (scene.bodies[i].polygon || scene.bodies[i].release || is_whole_multiple(size, spacing))
+      if (is_cut(scene.bodies[i]) || scene.bodies[i].release || is_whole_multiple(size, spacing))
         continue;
       const std::string near = nearby_h(scene, true);
       throw InputError(path_of(i, "size"), "the points cannot represent " + number(size) +
@@ -435,6 +437,34 @@ Polygon outline(const Body& body) {
   return {{{o[0], o[1]}, {right, o[1]}, {right, top}, {o[0], top}}};
 }
 
+/// A place that two bodies have in common in the box between two corners, more than a tenth of a
+/// cell along an upright line: looked for on 100 lines along each level axis.
+std::optional<Position> common_place(const Scene& scene, const Body& a, const Body& b,
+                                     const Position& from, const Position& to) {
+  constexpr int lines = 100;
+  const int rows = scene.dimensions() == 3 ? lines : 1;
+  const auto between = [&](std::size_t axis, int n, int count) {
+    return from[axis] + (to[axis] - from[axis]) * (n + 0.5) / count;
+  };
+  for (int i = 0; i < lines; ++i)
+    for (int k = 0; k < rows; ++k) {
+      const double x = between(0, i, lines), z = between(2, k, rows);
+      const Spans of_b = spans_over(scene, b, x, z);
+      if (of_b.empty()) continue;
+      for (const Span& p : spans_over(scene, a, x, z))
+        for (const Span& q : of_b) {
+          const double low = std::max(p.low, q.low), high = std::min(p.high, q.high);
+          if (high - low > 0.1 * scene.h) return Position{x, 0.5 * (low + high), z};
+        }
+    }
+  return {};
+}
+
+std::string words(const Position& x, std::size_t axes) {
+  return "(" + number(x[0], 4) + ", " + number(x[1], 4) +
+         (axes == 3 ? ", " + number(x[2], 4) : std::string()) + ") m";
+}
+
 void check_overlap(const Scene& scene) {
   const auto name = [&](std::size_t i) {
     const std::string& given = scene.bodies[i].name;
@@ -452,7 +482,16 @@ void check_overlap(const Scene& scene) {
       if (to[0] - from[0] <= slack || to[1] - from[1] <= slack ||
           (scene.dimensions() == 3 && to[2] - from[2] <= slack))
         continue;
-      if (a.release || b.release) continue;  // the box around it is not what it fills
+      if (a.release || b.release) continue;         // the box around it is not what it fills
+      const auto is_plain = [](const Body& body) {  // what overlap() knows
+        return !is_cut(body) || is_plain_polygon(body);
+      };
+      if (!is_plain(a) || !is_plain(b)) {
+        if (const auto place = common_place(scene, a, b, from, to))
+          throw InputError(path_of(i, "shape"), name(i) + " overlaps " + name(j) + " around " +
+                                                    words(*place, scene.dimensions()));
+        continue;
+      }
       if ((a.polygon || b.polygon) && !overlap(outline(a), outline(b), slack)) continue;
       throw InputError(path_of(i, "origin"), name(i) + " overlaps " + name(j) + " in x = [" +
                                                  number(from[0]) + ", " + number(to[0]) +
@@ -488,17 +527,68 @@ void check_polygon(const Polygon& polygon, const std::string& key) {
   if (!(piece_of(polygon).area > 0.0)) throw InputError(key, "the polygon has no area");
 }
 
+/// A rigid region, or one that cuts a body; `path`: of its table, with a dot.
+void check_solid(const Scene& scene, const Solid& solid, const std::string& path) {
+  const bool space = scene.dimensions() == 3;
+  const auto has_direction = [&](const Position& x) {
+    return x[0] * x[0] + x[1] * x[1] + (space ? x[2] * x[2] : 0.0) > 0.0;
+  };
+  if (const auto* const plane = std::get_if<HalfSpace>(&solid.shape))
+    if (!has_direction(plane->normal))
+      throw InputError(path + "normal", "a normal of length 0 has no direction");
+  if (const auto* const polygon = std::get_if<Polygon>(&solid.shape))
+    check_polygon(*polygon, path + "corners");
+  if (const auto* const ball = std::get_if<Ball>(&solid.shape))
+    require(ball->radius, positive, (path + "radius").c_str(), "radius");
+  if (const auto* const curve = std::get_if<Curve>(&solid.shape)) {
+    if (!curve->line) throw InputError(path + "file", "a curve without points");
+    if (const auto fault = PolyLine::fault_of(curve->line->points(), curve->line->closed()))
+      throw InputError(path + "file", fault->what);
+  }
+  if (const auto* const cylinder = std::get_if<Cylinder>(&solid.shape)) {
+    if (!space) throw InputError(path + "shape", "a cylinder is a shape of space");
+    if (!has_direction(cylinder->axis))
+      throw InputError(path + "axis", "an axis of length 0 has no direction");
+    require(cylinder->radius, positive, (path + "radius").c_str(), "radius");
+    if (cylinder->length < HUGE_VAL)
+      require(cylinder->length, positive, (path + "length").c_str(), "length");
+  }
+  if (const auto* const mesh = std::get_if<Mesh>(&solid.shape)) {
+    if (!space) throw InputError(path + "shape", "a mesh is a shape of space");
+    if (!mesh->mesh || mesh->mesh->size() == 0)
+      throw InputError(path + "file", "a mesh without triangles");
+  }
+}
+
+/// Bodies that are cut by their surfaces.
+void check_solids(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Body& body = scene.bodies[i];
+    if (body.solid) {
+      check_solid(scene, *body.solid, path_of(i, ""));
+      if (body.solid->hollow) throw InputError(path_of(i, "shape"), "a body is not hollow");
+      if (const auto* const cylinder = std::get_if<Cylinder>(&body.solid->shape);
+          cylinder != nullptr && cylinder->length == HUGE_VAL)
+        throw InputError(path_of(i, "length"), "a cylinder that is a body has a length");
+      if (const auto* const curve = std::get_if<Curve>(&body.solid->shape);
+          curve != nullptr && (!curve->line->closed() || scene.dimensions() == 3))
+        throw InputError(path_of(i, "closed"),
+                         "a curve that is a body is closed, and in the plane");
+    }
+    if (body.release && is_cut(body))
+      throw InputError(path_of(i, body.within.empty() ? "without" : "within"),
+                       "what a terrain releases is cut by nothing else");
+    for (const auto& [list, key] : {std::pair{&body.within, "within"}, {&body.without, "without"}})
+      for (std::size_t k = 0; k < list->size(); ++k)
+        check_solid(scene, (*list)[k], path_of(i, key) + "[" + std::to_string(k) + "].");
+  }
+}
+
 void check_surfaces(const Scene& scene) {
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
     const Surface& surface = scene.surfaces[i];
     const std::string path = "surface[" + std::to_string(i) + "].";
-    if (const auto* const plane = std::get_if<HalfSpace>(&surface.solid.shape))
-      if (const auto& n = plane->normal; !(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0.0))
-        throw InputError(path + "normal", "a normal of length 0 has no direction");
-    if (const auto* const polygon = std::get_if<Polygon>(&surface.solid.shape))
-      check_polygon(*polygon, path + "corners");
-    if (const auto* const ball = std::get_if<Ball>(&surface.solid.shape))
-      require(ball->radius, positive, (path + "radius").c_str(), "radius");
+    check_solid(scene, surface.solid, path);
     if (surface.contact == Surface::Contact::friction)
       require(surface.friction, not_negative, (path + "friction").c_str(), "friction");
     for (const double x : {surface.velocity[0], surface.velocity[1], surface.velocity[2],
@@ -653,7 +743,7 @@ void check_places(const Scene& scene, const std::vector<Probe>& places, const ch
 void check_polygons(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& body = scene.bodies[i];
-    if (!body.polygon) continue;
+    if (!body.polygon || body.solid) continue;
     check_polygon(*body.polygon, path_of(i, "corners"));
     if (scene.dimensions() == 3)
       throw InputError(path_of(i, "corners"), "a polygon is a body of the plane");
@@ -822,6 +912,7 @@ void validate(const Scene& scene) {
   check_parts(scene);
   check_terrain(scene);
   if (scene.start_from.empty()) {
+    check_solids(scene);
     check_geometry(scene);
     check_discs(scene);
     check_polygons(scene);

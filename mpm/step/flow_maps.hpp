@@ -7,18 +7,22 @@
 
 #include "mpm/grid/points.hpp"
 #include "mpm/scene/scene.hpp"
+#include "mpm/step/simulation.hpp"
 
 namespace repose::mpm {
 
 /// The plan of a scene in space, a column of cells at each node (i h, k h); x first.
 class FlowMaps {
  public:
-  /// Of a scene with a terrain.
-  explicit FlowMaps(const Scene& scene);
+  /// Of a scene with a terrain, whose bodies are as they start.
+  FlowMaps(const Scene& scene, const std::vector<PointsOf<3>>& bodies);
 
   /// Looks at the points, if they may have gone half a cell since the last time that it did: no
   /// point has gone farther than `way` since the last call [m].
   void observe(const std::vector<PointsOf<3>>& bodies, double time, double way);
+
+  /// How far the flow has come and how much of the ground it covers, as the points are now.
+  Simulation::FlowExtent extent(const std::vector<PointsOf<3>>& bodies) const;
 
   /// Solid depth, column mass over ρ_0, measured along y, as the points are now [m].
   std::vector<double> depth(const std::vector<PointsOf<3>>& bodies) const;
@@ -39,6 +43,11 @@ class FlowMaps {
     std::vector<std::array<double, 3>> momentum;  ///< [kg m/s]
   };
   Columns columns_of(const std::vector<PointsOf<3>>& bodies, bool with_momentum) const;
+  double distance_at(double x, double z) const;
+  double area_of(std::size_t i, std::size_t k) const;  ///< of a node's column [m²]
+
+  /// Of each node from the cells that held a point at the start, in the plan [m]
+  std::vector<double> distance_;
 };
 
 }  // namespace repose::mpm

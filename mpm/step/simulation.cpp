@@ -112,7 +112,8 @@ Simulation::Impl<dim>::Impl(const Scene& given, const Prescribed& by_program, in
   ledger.power = initial_power();
   highest_energy = energy_bound();
   if (scene.gravity_ramp > 0.0) change_gravity(gravity_now());
-  if (scene.terrain) maps.emplace(scene);
+  if constexpr (dim == 3)
+    if (scene.terrain) maps.emplace(scene, bodies);
   observe_flow(0.0);
 }
 
@@ -199,10 +200,16 @@ double Simulation::time() const {
 std::int64_t Simulation::steps() const {
   return visit([](const auto& s) { return s.steps; });
 }
-Simulation::PlanMaps Simulation::plan_maps() const {
+const FlowMaps& Simulation::flow_maps() const {
   if (!space_ || !space_->maps)
     throw InputError("terrain", "only a scene with a terrain has maps of its flow");
-  const FlowMaps& maps = *space_->maps;
+  return *space_->maps;
+}
+Simulation::FlowExtent Simulation::flow_extent() const {
+  return flow_maps().extent(space_->bodies);
+}
+Simulation::PlanMaps Simulation::plan_maps() const {
+  const FlowMaps& maps = flow_maps();
   return {maps.columns,   maps.rows,      maps.h,       maps.least_depth,
           maps.depth_max, maps.speed_max, maps.arrival, maps.depth(space_->bodies)};
 }

@@ -14,6 +14,7 @@
 
 namespace repose::mpm {
 
+class FlowMaps;       // step/flow_maps.hpp
 struct Deposit;       // output/deposit.hpp
 struct RestPressure;  // output/rest_pressure.hpp
 
@@ -99,6 +100,20 @@ class Simulation {
   };
   /// Errors: InputError for a scene without a terrain.
   PlanMaps plan_maps() const;
+
+  /// A flow over a terrain as it is now. Distances are those in the plan from the nearest cell that
+  /// held a point at the start, straight [m].
+  struct FlowExtent {
+    double runout_99_m = 0.0;   ///< up to which lies 99 % of the mass in the box
+    double runout_max_m = 0.0;  ///< of the farthest point
+    double area_m2 = 0.0;       ///< of the plan where the solid depth is at least least_depth
+    double reached_m2 = 0.0;    ///< where it ever was
+    double depth_mean_m = 0.0, depth_max_m = 0.0;  ///< solid depth over that area
+    double speed_mean = 0.0;                       ///< of all mass [m/s]
+    double speed_max = 0.0;                        ///< largest mean speed of a column so deep [m/s]
+  };
+  /// Errors: as plan_maps().
+  FlowExtent flow_extent() const;
 
   /// Pressure against overburden, for a deposit in the plane at rest (gravity along −y): points
   /// deeper than 2h below the surface, where the deposit has at least a quarter of its greatest
@@ -206,6 +221,7 @@ class Simulation {
   friend class MidCollapse;  ///< bench/: starts from points that another resolution has moved
   template <int dim>
   class Impl;
+  const FlowMaps& flow_maps() const;
   /// f(whichever of the two there is).
   template <class F>
   auto visit(F&& f) const;

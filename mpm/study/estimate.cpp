@@ -98,6 +98,7 @@ constexpr double seconds_per_point_step = 1e-7;
 Estimate counted(const Scene& scene, const Needs& needs) {
   Estimate e;
   e.points = std::llround(needs.points);
+  for (const Body& body : scene.bodies) e.volume += volume_of(scene, body);
   e.live_cells = std::llround(needs.points / scene.points_per_cell);
   e.memory_MB = needs.memory_MB;
   const StepLimits limits =
@@ -134,6 +135,9 @@ Estimate estimate(const Scene& scene, int threads) {
   e.measured = true;
   Simulation simulation(scene, threads);
   e.points = simulation.point_count();
+  const Simulation::Snapshot start_points = simulation.snapshot();
+  for (std::size_t n = 0; n < start_points.mass.size(); ++n)
+    e.volume += start_points.mass[n] / start_points.density[n];
   e.live_cells = simulation.live_cells();
   e.first_dt_s = simulation.next_dt();
   require_end_in_reach(scene, e.first_dt_s);

@@ -13,6 +13,7 @@ namespace repose::mpm {
 struct Estimate {
   bool measured = false;  ///< on the scene as it is laid out; else counted from its numbers
   std::int64_t points = 0;
+  double volume = 0.0;          ///< of all bodies, less what surfaces cut [m³], in the plane [m²]
   std::int64_t live_cells = 0;  ///< at the start
   double first_dt_s = 0.0;
   /// Longest steps expected on the way [s]: by the fastest signal, which goes with h, and by an

@@ -52,7 +52,7 @@ Needs needs_in(const Scene& scene) {
         (body.restitution ? PointsOf<dim>::force_components : std::size_t{0}) +
         (scene.transfer == Transfer::relaxed ? Layout<dim>::gradient : std::size_t{0}));
     const std::array<std::int64_t, 3> lattice = point_lattice(scene, body);
-    const double slots = body.release
+    const double slots = body.release || (is_cut(body) && !is_plain_polygon(body))
                              ? points
                              : static_cast<double>(lattice[0]) * static_cast<double>(lattice[1]) *
                                    static_cast<double>(lattice[2]);

@@ -21,6 +21,7 @@ from ._core import (InputError, NumericalFailure, batch_array, instruction_set,
 from .columns import Columns
 from .fitting import FitResult, fit
 from .law import Law, LawInfo, laws
+from .maps import Map, Maps
 from .point_test import PointResult, PointTest, point
 from .python_law import Parameter, PythonLaw, register_law
 from .result import Result
@@ -52,7 +53,7 @@ def cmake_dir() -> str:
 
 
 __all__ = [
-    "Columns", "FitResult", "InputError", "Law", "LawInfo", "Nodes", "NumericalFailure",
+    "Columns", "FitResult", "InputError", "Law", "LawInfo", "Map", "Maps", "Nodes", "NumericalFailure",
     "Parameter", "PointResult", "PointTest", "Points", "PythonLaw", "Result", "Simulation",
     "batch_array", "chart", "cmake_dir", "estimate", "fit", "instruction_set", "json_schema", "keys", "laws",
     "point", "register_law", "run", "shipped_cases", "shipped_scenes", "shipped_tests", "sweep",

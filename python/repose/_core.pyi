@@ -135,6 +135,7 @@ class Simulation:
     @property
     def h(self) -> float: ...
     def load(self: Simulation, path: str) -> None: ...
+    def maps(self: Simulation) -> dict: ...
     @property
     def name(self) -> str: ...
     @property
@@ -195,6 +196,9 @@ def read_frame(path: str) -> dict:
 
 def read_frame_series(series: str) -> list[tuple[str, float]]:
     """(file, time) of every frame that a NAME.hdf.series lists."""
+
+def read_raster(path: str) -> dict:
+    """A map: values, west, south, cell, crs."""
 
 def register_law(law: Any, tables: dict) -> None:
     """Makes a law known by its name; `repose.register_law` is what to call."""

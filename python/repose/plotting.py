@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .fitting import FitResult
+    from .maps import Map
     from .point_test import PointResult
     from .result import Result
     from .simulation import Simulation
@@ -152,13 +153,14 @@ def result_figure(result: "Result") -> "Figure":
 
 def _run_figure(result: "Result") -> "Figure":
     series = result.table("series")
-    profile = result.table("profile") if "profile" in result.tables else None
+    maps = [drawn for name, drawn in result.maps.items() if name in ("largest_depth", "deposit")]
+    profile = result.table("profile") if "profile" in result.tables and not maps else None
     last = result.frames[-1] if len(result.frames) else None
-    panels_wanted = 2 + (profile is not None) + (last is not None)
+    panels_wanted = 2 + len(maps) + (profile is not None) + (last is not None and not maps)
     with _panels(result.name, -(-panels_wanted // 2), 2) as (figure, panels):
         left = iter(panels)
         axes = next(left)
-        for name in ("front_99_m", "height_m"):
+        for name in ("runout_99_m", "runout_max_m") if maps else ("front_99_m", "height_m"):
             axes.plot(series["time_s"], series[name], label=name.removesuffix("_m"))
         axes.set_xlabel("t (s)")
         axes.set_ylabel("m")
@@ -170,15 +172,35 @@ def _run_figure(result: "Result") -> "Figure":
         axes.set_xlabel("t (s)")
         axes.set_ylabel("energy (J/m)" if "kinetic_J_per_m" in series.names else "energy (J)")
         axes.legend()
+        for drawn in maps:
+            drawn.plot(next(left))
         if profile is not None:
             axes = next(left)
             axes.plot(profile["x_m"], profile["depth_m"])
             axes.set_xlabel("x (m)")
             axes.set_ylabel("solid depth (m)")
-        if last is not None:
+        if last is not None and not maps:
             position = last["position_m"]
             speed = np.linalg.norm(last["velocity_m_per_s"], axis=1)
             _heap(next(left), position[:, 0], position[:, 1], speed, "speed (m/s)")
         for axes in left:
             axes.set_axis_off()
     return figure
+
+
+def map_axes(drawn: "Map", axes: "Axes | None", least: float, options: dict[str, Any]) -> "Axes":
+    """A map in the axes, or in a figure of its own, with a colour bar."""
+    from matplotlib.figure import Figure
+    with style():
+        if axes is None:
+            axes = Figure(figsize=(7.0, 5.0)).subplots()
+        figure = axes.get_figure()
+        shown = np.where(drawn.values > least, drawn.values, np.nan)
+        image = axes.imshow(shown, extent=drawn.extent, **{"interpolation": "nearest", **options})
+        axes.grid(False)
+        axes.locator_params(axis="x", nbins=4)  # six digits each
+        axes.set_xlabel("easting (m)")
+        axes.set_ylabel("northing (m)")
+        if figure is not None:
+            figure.colorbar(image, ax=axes, label=drawn.label, shrink=0.7)
+    return axes

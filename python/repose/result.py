@@ -14,6 +14,7 @@ import numpy as np
 
 from . import _core, arguments
 from .columns import Columns
+from .maps import Maps
 from .names import nearest
 
 if TYPE_CHECKING:
@@ -142,6 +143,12 @@ class Result:
     def frames(self) -> Frames:
         """The frames of a run."""
         return Frames(self.folder / "frames")
+
+    @cached_property
+    def maps(self) -> Maps:
+        """The maps of a run over a terrain: `maps["deposit"].values`; largest_depth, largest_speed,
+        arrival_time, deposit. Empty of any other."""
+        return Maps.of_folder(self.folder)
 
     @property
     def runs(self) -> list["Result"]:

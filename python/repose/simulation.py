@@ -13,6 +13,7 @@ import numpy as np
 from . import _core, arguments
 from .columns import Columns
 from .inputs import Source, document, open_input, refused
+from .maps import Maps
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -173,6 +174,11 @@ class Simulation:
         """Solid depth over x: x_m, depth_m."""
         x, depth = self._sim.profile()
         return Columns({"x_m": x, "depth_m": depth}, "profile")
+
+    def maps(self) -> Maps:
+        """The maps of a flow over a terrain up to now: largest_depth, largest_speed, arrival_time,
+        deposit, on the cells of the ground's map. Raises InputError for a scene without one."""
+        return Maps.of_rasters(self._sim.maps(), f"{self.name} at {self.time:g} s")
 
     @property
     def notes(self) -> list[str]:

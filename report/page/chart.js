@@ -7,6 +7,8 @@ const shapes = [
   "M0 4.6l-4.3-8h8.6Z", "M-4-1.4h2.6v-2.6h2.8v2.6h2.6v2.8h-2.6v2.6h-2.8v-2.6h-2.6Z",
 ];
 const colour_of = (k) => `var(--c${k % 7})`;
+/// Of bodies, in the order of the pictures (colour_of_body): vermillion is for what is looked at.
+const colour_of_body = (k) => `--c${[0, 4, 2, 3, 5][k % 5]}`;
 /// Neighbours differ in colour, dash and mark, so that no one of the three is needed.
 function look(series) {
   const k = series.style;

@@ -59,7 +59,7 @@ function group(text) {
 const units = [
   ["_J_per_m3", "J/m³", 1], ["_J_per_m", "J/m", 1], ["_kg_per_m3", "kg/m³", 1], ["_kg_per_m", "kg/m", 1],
   ["_m_per_s", "m/s", 1], ["_per_cpu_s", "1/s", 1], ["_1_per_s", "1/s", 1], ["_1_per_m", "1/m", 1], ["_per_s", "1/s", 1], ["_kPa", "kPa", 1], ["_Pa", "kPa", 1e-3],
-  ["_percent", "%", 1], ["_MB", "MB", 1], ["_deg", "°", 1], ["_s", "s", 1], ["_m", "m", 1],
+  ["_kg", "kg", 1], ["_J", "J", 1], ["_m2", "m²", 1], ["_percent", "%", 1], ["_MB", "MB", 1], ["_deg", "°", 1], ["_s", "s", 1], ["_m", "m", 1],
 ];
 const greek = {eps: "ε", deps: "Δε", gamma: "γ", sigma: "σ", tau: "τ", mu: "μ", eta: "η", lambda: "λ", kappa: "κ", rho: "ρ", nu: "ν", phi: "φ", delta: "Δ", Gamma: "Γ"};
 const words = {
@@ -68,6 +68,9 @@ const words = {
   velocity: "speed |v|", mises: "von Mises stress", density_min: "least density", density_max: "largest density",
   front_change: "change of the front", height_change: "change of the height", profile_change_mean: "mean change of the profile",
   profile_change_max: "largest change of the profile", courant: "Courant number",
+  runout_99: "run-out, 99 % of the mass", runout_max: "run-out, farthest point", area: "area covered now", reached: "area ever reached",
+  depth_max: "largest depth", depth_mean: "mean depth", speed_max: "largest speed", speed_mean: "mean speed",
+  inflow: "has come in", outflow: "has left", depth: "solid depth", pressure: "mean pressure",
 };
 const whole_names = {density: ["density", "kg/m³"], density_min: ["least density", "kg/m³"], density_max: ["largest density", "kg/m³"],
   momentum_x: ["momentum x", "kg/s"], momentum_y: ["momentum y", "kg/s"], angular_momentum: ["angular momentum", "kg m/s"]};

@@ -46,7 +46,7 @@ float magnitude(std::span<const double> v) {
   return static_cast<float>(v.size() == 1 ? v.front() : std::sqrt(sum));
 }
 
-void gather(Gathered& all, const io::Frame& frame, std::size_t most) {
+void gather(Gathered& all, const io::Frame& frame, double plan_height, std::size_t most) {
   const std::vector<std::size_t> chosen = io::thin_evenly(frame.points, most);
   const std::size_t before = all.x.size();
   all.times.push_back(frame.time_s);
@@ -54,8 +54,10 @@ void gather(Gathered& all, const io::Frame& frame, std::size_t most) {
   all.most_points = std::max(all.most_points, frame.points);
   for (const std::size_t i : chosen) {
     all.x.push_back(static_cast<float>(frame.position_m[3 * i]));
-    all.y.push_back(static_cast<float>(frame.position_m[3 * i + 1]));
-    all.depth = all.depth || frame.position_m[3 * i + 2] != frame.position_m[2];
+    const double y = frame.position_m[3 * i + 1], z = frame.position_m[3 * i + 2];
+    const bool above = plan_height > 0.0;
+    all.y.push_back(static_cast<float>(above ? plan_height - z : y));
+    all.depth = all.depth || (!above && z != frame.position_m[2]);
   }
   for (const io::Frame::Field& field : frame.fields) {
     const std::size_t n = field.components;
@@ -104,12 +106,12 @@ Range colours_of(std::span<const float> values, const Range& extremes) {
 }  // namespace
 
 Json pack_frames(std::size_t count, const std::function<io::Frame(std::size_t)>& next,
-                 const PackLimits& limits) {
+                 const PackLimits& limits, double plan_height) {
   const std::vector<std::size_t> chosen = io::thin_evenly(count, limits.frames);
   const std::size_t most =
       std::min(limits.points, limits.points_in_all / std::max<std::size_t>(chosen.size(), 1));
   Gathered all;
-  for (const std::size_t i : chosen) gather(all, next(i), most);
+  for (const std::size_t i : chosen) gather(all, next(i), plan_height, most);
 
   std::size_t lost = 0;
   const auto span_of = [](const Range& r) { return r.empty() ? Range{r.lower, r.lower + 1.0} : r; };

@@ -9,7 +9,7 @@ const kind_names = {
 };
 // what a reader wants first, and in which words
 const figures = {
-  run: [["front_m", "front"], ["height_m", "height"], ["time_s", "simulated"], ["points", "points"], ["lost_points", "points lost"], ["energy_error", "energy not accounted for"], ["kinetic_J_per_m", "kinetic energy left"], ["steps", "steps"], ["wall_s", "wall time"], ["point_steps_per_s", "point-steps per second"]],
+  run: [["front_m", "front"], ["height_m", "height"], ["runout_99_m", "run-out, 99 % of the mass"], ["runout_max_m", "run-out, farthest point"], ["largest_depth_m", "largest depth"], ["largest_speed_m_per_s", "largest speed"], ["reached_m2", "area reached"], ["time_s", "simulated"], ["points", "points"], ["lost_points", "points lost"], ["energy_error", "energy not accounted for"], ["kinetic_J_per_m", "kinetic energy left"], ["kinetic_J", "kinetic energy left"], ["outflow_kg_per_m", "has left the box"], ["outflow_kg", "has left the box"], ["inflow_kg_per_m", "has come in"], ["inflow_kg", "has come in"], ["steps", "steps"], ["wall_s", "wall time"], ["point_steps_per_s", "point-steps per second"]],
   point_test: [["rows", "rows"], ["method", "integrator"], ["q_max_Pa", "largest q"], ["steps", "steps"], ["control_residual", "control residual"], ["wall_s", "wall time"]],
   fit: [["objective", "objective"], ["counts.starts", "starts"], ["counts.evaluations", "evaluations"], ["counts.gradients", "gradients"], ["wall_s", "wall time"]],
   chart_point: [["settings", "settings"]],
@@ -63,7 +63,9 @@ function warnings(results) {
 
 function key_figures(kind, results) {
   const wanted = (figures[kind] ?? Object.keys(results[0].summary).filter((k) => typeof results[0].summary[k] === "number").map((k) => [k, label(k).short]))
-    .filter(([key]) => results.some((r) => at_path(r.summary, key) !== undefined));
+    .filter(([key]) => results.some((r) => at_path(r.summary, key) !== undefined))
+    .filter(([key]) => !(/^(front|height)_m$/.test(key) && results.every((r) => "runout_99_m" in r.summary)))
+    .filter(([key]) => !(key.startsWith("outflow_") && results.every((r) => r.summary[key] === 0)));
   if (wanted.length === 0) return null;
   if (results.length === 1)
     return el("dl", {class: "tiles"}, wanted.map(([key, name]) => {
@@ -99,9 +101,17 @@ function player_of(results) {
   const runs = results.map((r, k) => ({r, k})).filter(({r}) => r.frames).map(({r, k}) => {
     const input = r.summary.input;
     const pulled = (input?.scene?.gravity ?? 0) > 0;
-    return {label: r.label, style: k, frames: r.frames, domain: input?.domain?.size?.slice(0, 2) ?? null, tilt: pulled ? input.scene.tilt_deg ?? 0 : null, spacing: spacing_of(input)};
+    return {label: r.label, style: k, frames: r.frames, domain: input?.domain?.size?.slice(0, 2) ?? null, tilt: pulled ? input.scene.tilt_deg ?? 0 : null, spacing: spacing_of(input), marks: r.scene ?? null,
+      tracks: looks_of([r], "tracer").map(({name, table}) => ({name, ...path_of(r, table)}))};
   });
   return runs.length ? new Player(runs).element : null;
+}
+
+/// The map that a run over a terrain leaves, large: it is what such a run is made for.
+function terrain_maps(results) {
+  return results.filter((r) => r.scene?.plan || "runout_99_m" in r.summary).flatMap((r) => r.pictures.filter((p) => p.name === "final.svg").map((p) =>
+    el("div", {class: "pictures"}, el("figure", {}, el("img", {class: "map", alt: `Largest depth and deposit of ${r.label}, from above`, src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(p.svg)}`}),
+      results.length > 1 ? el("figcaption", {class: "note"}, r.label) : null))));
 }
 
 /// Parameters with their intervals, and how the data tie them to each other.
@@ -172,9 +182,9 @@ function section(kind, results) {
   const files = [...new Set(results.flatMap((r) => Object.keys(r.tables)))].filter((f) => sources_of(results, f).length > 0);
   const ordered = known ? [...Object.keys(panels[kind]).filter((f) => files.includes(f)), ...files.filter((f) => !panels[kind][f])] : files;
   const names = kind_names[kind] ?? [kind.replaceAll("_", " "), kind.replaceAll("_", " ")];
-  const charts = ordered.flatMap((file) => charts_of(kind, file, sources_of(results, file)));
+  const charts = [...ordered.flatMap((file) => charts_of(kind, file, sources_of(results, file))), ...(kind === "run" ? draw_looks(results) : [])];
   return el("section", {class: "kind", id: `kind-${kind}`}, el("h2", {}, capital(names[results.length > 1 ? 1 : 0])), folder_list(results),
-    kind === "run" ? player_of(results) : null, key_figures(kind, results), warnings(results), fit_tables(results), differences(results),
+    kind === "run" ? player_of(results) : null, kind === "run" ? terrain_maps(results) : null, key_figures(kind, results), warnings(results), fit_tables(results), differences(results),
     charts.length ? el("div", {class: "panels"}, charts) : null, appendix(kind, results, files, known));
 }
 

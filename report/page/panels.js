@@ -16,9 +16,17 @@ const stress_paths = [
 const panels = {
   run: {
     "series.csv": [
-      {title: "Front and height", x: "time_s", y: ["front_m", "front_max_m", "height_m"], y_text: "length (m)", compare: ["front_m", "height_m"]},
+      {title: "Front and height", x: "time_s", y: ["front_m", "front_max_m", "height_m"], y_text: "length (m)", compare: ["front_m", "height_m"], unless: "runout_99_m"},
+      {title: "Run-out in the plan", x: "time_s", y: ["runout_99_m", "runout_max_m"], y_text: "distance from the release (m)", compare: ["runout_99_m"]},
+      {title: "Depth of the flow", x: "time_s", y: ["depth_max_m", "depth_mean_m"], y_text: "solid depth (m)", compare: ["depth_max_m"]},
+      {title: "Speed of the flow", x: "time_s", y: ["speed_max_m_per_s", "speed_mean_m_per_s"], y_text: "speed (m/s)", compare: ["speed_max_m_per_s"]},
+      {title: "Ground covered", x: "time_s", y: ["area_m2", "reached_m2"], y_text: "area (m²)", compare: ["reached_m2"]},
       {title: "Energy", x: "time_s", y: ["kinetic_J_per_m", "elastic_J_per_m", "dissipated_J_per_m", "transfer_loss_J_per_m", "wall_loss_J_per_m"], y_text: "energy (J/m)", compare: ["kinetic_J_per_m", "dissipated_J_per_m"]},
+      {title: "Energy", x: "time_s", y: ["kinetic_J", "elastic_J", "dissipated_J", "transfer_loss_J", "wall_loss_J"], y_text: "energy (J)", compare: ["kinetic_J", "dissipated_J"]},
       {title: "Energy not accounted for", x: "time_s", y: ["energy_residual_J_per_m"], varies: true},
+      {title: "Energy not accounted for", x: "time_s", y: ["energy_residual_J"], varies: true},
+      {title: "Mass through the edges", x: "time_s", y: ["inflow_kg_per_m", "outflow_kg_per_m"], y_text: "mass (kg/m)", varies: true},
+      {title: "Mass through the edges", x: "time_s", y: ["inflow_kg", "outflow_kg"], y_text: "mass (kg)", varies: true},
       {title: "Density", x: "time_s", y: ["density_min", "density_max"], y_text: "density (kg/m³)", compare: []},
       {title: "Time step", x: "time_s", y: ["dt_s"], varies: true},
       {title: "Points torn from the rest", x: "time_s", y: ["points_separated"], varies: true},
@@ -80,7 +88,7 @@ function draw_panel(panel, sources) {
       }
     if (series.length === 0) return [];
     return [new Chart({
-      title, series, equal: panel.equal, time: panel.x === "time_s", always_name: several,
+      title, series, equal: panel.equal, time: panel.x === "time_s", always_name: several || columns.length > 1,
       x: axis(panel.x, null, panel.log_x), y: axis(columns[0], y_text, panel.log_y),
     }).element];
   };
@@ -160,6 +168,54 @@ function draw_predictions(sources) {
     charts.push(new Chart({title: `${target}${held_out === "yes" ? " (held out, predicted)" : ""}`, series, x: {label: xl, log}, y: {label: yl}}).element);
   }
   return charts;
+}
+
+/// The tables of a run's probes or tracers: [{name: "2: flank", result, style, table}]. They are numbered in the order of the
+/// scene, as the pictures do.
+function looks_of(results, kind) {
+  return results.flatMap((result, k) => {
+    const order = kind === "probe" ? (result.scene?.probes ?? []).map((p) => p.name) : result.scene?.tracers ?? [];
+    const names = Object.keys(result.tables).filter((file) => file.startsWith(`${kind}_`)).map((file) => file.slice(kind.length + 1, -4));
+    names.sort((a, b) => (order.indexOf(a) + 1 || 1e9) - (order.indexOf(b) + 1 || 1e9));
+    return names.map((name) => {
+      const number = kind === "probe" && order.includes(name) ? `${order.indexOf(name) + 1}: ` : "";
+      return {name: `${results.length > 1 ? `${result.label}, ` : ""}${number}${name}`, style: k, result, table: result.tables[`${kind}_${name}.csv`]};
+    }).filter(({table}) => table.shown > 0);
+  });
+}
+
+/// What the probes saw, and where the tracers went.
+function draw_looks(results) {
+  const charts = [];
+  const over_time = (looks, title, column) => {
+    const shown = looks.filter(({table}) => has(table, column) && column_of(table, column).some(Number.isFinite));
+    if (shown.length === 0) return;
+    charts.push(new Chart({
+      title, time: true, always_name: true, x: axis("time_s"), y: axis(column),
+      series: shown.map(({name, table}, k) => ({
+        name, style: k, x: picked(table, "time_s", all_rows(table)), y: picked(table, column, all_rows(table), label(column).factor)})),
+    }).element);
+  };
+  const probes = looks_of(results, "probe"), tracers = looks_of(results, "tracer");
+  for (const [title, column] of [["Depth at the probes", "depth_m"], ["Speed at the probes", "speed_m_per_s"], ["Mean pressure at the probes", "pressure_Pa"], ["Shear stress q at the probes", "q_Pa"]])
+    over_time(probes, title, column);
+  if (tracers.length) {
+    const plan = tracers.some(({result}) => result.scene?.plan);
+    charts.push(new Chart({
+      title: plan ? "Paths of the tracers, from above" : "Paths of the tracers", equal: true, always_name: true,
+      x: {label: made("x", "", "m", 1)}, y: {label: made(plan ? "northwards" : "y", "", "m", 1)},
+      series: tracers.map(({name, result, table}, k) => ({name, style: k, scattered: true, ...path_of(result, table)})),
+    }).element);
+    over_time(tracers, "Speed of the tracers", "speed_m_per_s");
+  }
+  return charts;
+}
+
+/// A tracer's places in the plane that its run is seen in: {time, x, y}.
+function path_of(result, table) {
+  const rows = all_rows(table), height = result.scene?.plan ? result.scene.plan_height : null;
+  const y = height === null ? picked(table, "y_m", rows) : picked(table, "z_m", rows).map((z) => height - z);
+  return {time: picked(table, "time_s", rows), x: picked(table, "x_m", rows), y};
 }
 
 /// Charts of one file over all folders of a kind; an unknown table is shown as it looks.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <system_error>
@@ -11,11 +12,13 @@
 #include <fmt/core.h>
 
 #include "input/input_file.hpp"
+#include "input/read_scene.hpp"
 #include "io/csv_columns.hpp"
 #include "io/frame_reader.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/page/pack_frames.hpp"
+#include "report/page/scene_marks.hpp"
 
 namespace repose::report {
 namespace {
@@ -78,20 +81,41 @@ bool is_for_the_page(const io::Frame::Field& field) {
   return std::find(usual.begin(), usual.end(), field.name) != usual.end();
 }
 
-Json frames_of(const fs::path& series) {
+Json frames_of(const fs::path& series, double plan_height) {
   const std::vector<io::FrameEntry> entries = io::read_frame_series(series);
-  return pack_frames(entries.size(), [&](std::size_t i) {
-    io::Frame frame = io::read_frame(series.parent_path() / entries[i].file_name);
-    std::erase_if(frame.fields, [](const auto& field) { return !is_for_the_page(field); });
-    return frame;
-  });
+  return pack_frames(
+      entries.size(),
+      [&](std::size_t i) {
+        io::Frame frame = io::read_frame(series.parent_path() / entries[i].file_name);
+        std::erase_if(frame.fields, [](const auto& field) { return !is_for_the_page(field); });
+        return frame;
+      },
+      {}, plan_height);
+}
+
+/// The scene of a run; nothing, with a note, where its input is not to be read here: its maps may
+/// be missing, or a law that a program brought along.
+std::optional<mpm::Scene> scene_of(Json& result) {
+  const Json* const input = result.find("input");
+  if (input == nullptr) return {};
+  try {
+    input::InputFile file = input::InputFile::parse(input->get<std::string>(), "input.toml");
+    return input::read_scene(file).scene;
+  } catch (const std::runtime_error& error) {
+    result["notes"].push_back(fmt::format(
+        "the animation shows points alone, without edges, surfaces and probes: {}", error.what()));
+  }
+  return {};
 }
 
 void add_frames(Json& result, const fs::path& folder) {
   const fs::path series = io::point_series_in(folder);
   if (series.empty()) return;
-  Json frames = frames_of(series);
-  if (!frames["times"].empty()) result["frames"] = std::move(frames);
+  const std::optional<mpm::Scene> scene = scene_of(result);
+  Json frames = frames_of(series, scene ? plan_height(*scene) : 0.0);
+  if (frames["times"].empty()) return;
+  if (scene) result["scene"] = scene_marks(*scene, frames["times"].get<std::vector<double>>());
+  result["frames"] = std::move(frames);
 }
 
 }  // namespace

@@ -49,12 +49,18 @@ async function self_test() {
     for (const name of player.names) { player.select.value = name; player.select.dispatchEvent(new Event("change")); }
     player.select.value = player.names[0] ?? "";
     player.select.dispatchEvent(new Event("change"));
+    const numbered = player.runs.reduce((n, run) => Math.max(n, run.marks?.probes.length ?? 0), 0);
+    expect(player.element.querySelectorAll("p.marks b").length >= numbered, "a probe has no name below the picture");
+    if (player.names.includes("body")) {
+      expect(player.names[0] === "body" && !player.bodies.hidden && player.scale.hidden, "several bodies are not told apart");
+      expect(player.bodies.querySelectorAll("i").length > 1, "the colours of the bodies have no names");
+    }
     player.toggle();
     expect(player.times.length < 2 || player.at === 0, "play does not begin anew at the end");
     player.stop();
   }
   expect(document.documentElement.scrollWidth <= window.innerWidth, `the page is ${document.documentElement.scrollWidth} px wide in a window of ${window.innerWidth} px`);
-  const counts = `${Chart.all.length} charts, ${HeatMap.all.length} maps, ${Player.all.length} players, ${document.images.length} pictures`;
+  const counts = `${Chart.all.length} charts, ${HeatMap.all.length} maps, ${Player.all.length} players, ${document.images.length} pictures, ${Player.all.flatMap((p) => p.runs).map((run) => (run.marks ? `${run.marks.surfaces.length} surfaces ${run.marks.probes.length} probes ${run.tracks.length} tracers ${run.marks.lines.length > 0 ? "contours" : "no contours"}` : "points alone")).join(" and ")}`;
   document.documentElement.dataset.selfTest = found.length ? `failed: ${found.join("; ")}` : `passed: ${counts}`;
 }
 if (location.hash === "#self-test") self_test().catch((error) => { document.documentElement.dataset.selfTest = `failed: ${error.stack}`; });

@@ -20,10 +20,12 @@ void check(const HeapPicture& picture) {
     throw std::invalid_argument(
         fmt::format("heap picture: box {} m x {} m, cells of {} m; all must be positive",
                     scene.domain[0], scene.domain[1], scene.h));
-  if (picture.x_m.size() != picture.y_m.size() || picture.x_m.size() != picture.value.size())
-    throw std::invalid_argument(fmt::format("heap picture: {} x, {} y, {} values",
-                                            picture.x_m.size(), picture.y_m.size(),
-                                            picture.value.size()));
+  const bool bodies = !picture.body.empty();
+  const std::size_t coloured = bodies ? picture.body.size() : picture.value.size();
+  if (picture.x_m.size() != picture.y_m.size() || picture.x_m.size() != coloured)
+    throw std::invalid_argument(fmt::format("heap picture: {} x, {} y, {} {}", picture.x_m.size(),
+                                            picture.y_m.size(), coloured,
+                                            bodies ? "bodies" : "values"));
 }
 
 /// The value below which a part of them lies; sorts as far as needed.
@@ -68,10 +70,16 @@ void write_heap_picture(const std::filesystem::path& path, const HeapPicture& pi
 
   Figure figure(picture.title, subtitle);
   Axes& axes = add_section(figure, picture.scene);
-  ScatterStyle style;
   // closes the gaps of an uneven arrangement
-  style.diameter = 1.7 * mpm::point_spacing(picture.scene);
-  axes.scatter(picture.x_m, picture.y_m, picture.value, colours, style);
+  const double diameter = 1.7 * mpm::point_spacing(picture.scene);
+  if (!picture.body.empty()) {
+    axes.legend = Legend::right;
+    draw_bodies(axes, picture.scene, picture.body, picture.x_m, picture.y_m, diameter);
+  } else {
+    ScatterStyle style;
+    style.diameter = diameter;
+    axes.scatter(picture.x_m, picture.y_m, picture.value, colours, style);
+  }
   draw_surroundings(axes, picture.scene, picture.section);
   figure.render_svg(path);
 }
@@ -99,6 +107,7 @@ bool draw_final_picture(const input::SceneFile& file, const mpm::Simulation& sim
   picture.section = section;
   picture.x_m = shot.x_m;
   picture.y_m = shot.y_m;
+  if (file.colour == input::PictureField::body) picture.body = shot.body;
   picture.value = values;
   picture.value_label = mises ? "von Mises stress (kPa)" : "density (kg/m³)";
   write_heap_picture(path, picture);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -19,12 +20,14 @@ struct HeapPicture {
   std::span<const double> x_m, y_m;
   std::span<const double> value;
   std::string value_label;  // with its unit: "von Mises stress (kPa)"
+  /// The bodies of the points, which then give the colours, with a legend; no value is needed.
+  std::span<const std::int32_t> body;
 };
 
-/// Draws the points coloured by value in their box, to scale, as SVG. If a few extreme values would
-/// take up most of the colours, those end at the 0.5 % and 99.5 % quantiles and the subtitle says
-/// so. Errors: std::invalid_argument for a box or spacing that is not positive or arrays that
-/// differ in length; PlotError; IoError.
+/// Draws the points coloured by value, or by body, in their box, to scale, as SVG. If a few extreme
+/// values would take up most of the colours, those end at the 0.5 % and 99.5 % quantiles and the
+/// subtitle says so. Errors: std::invalid_argument for a box or spacing that is not positive or
+/// arrays that differ in length; PlotError; IoError.
 void write_heap_picture(const std::filesystem::path& path, const HeapPicture& picture);
 
 /// The points of a simulation as they are, coloured by what the scene's [output] asks for; in space

@@ -17,6 +17,8 @@ using Kind = mpm::Wall::Kind;
 constexpr double largest_width_px = 860.0, largest_height_px = 560.0;  // of the box on paper
 constexpr double arrow_px = 56.0;
 constexpr double outline_px = 1.6;
+constexpr std::size_t most_named =
+    12;  // of bodies, and of probes: a legend no taller than the panel
 
 double wall_of(const mpm::Scene& scene) {
   return 0.012 * std::max(scene.domain[0], scene.domain[1]);
@@ -169,6 +171,57 @@ double farthest(const mpm::Polygon& outline, const Place& from) {
   return distance;
 }
 
+/// One line around an outline and its holes: what two of them surround is not in it.
+mpm::Polygon joined(const mpm::Outline& outline) {
+  if (outline.size() == 1) return outline.front();
+  mpm::Polygon line;
+  for (const mpm::Polygon& ring : outline) {
+    line.corners.insert(line.corners.end(), ring.corners.begin(), ring.corners.end());
+    line.corners.push_back(ring.corners.front());
+  }
+  return line;
+}
+
+/// Corners of the rectangle around a body.
+std::pair<Place, Place> around(const mpm::Body& body) {
+  return {{body.origin[0], body.origin[1]},
+          {body.origin[0] + body.size[0], body.origin[1] + body.size[1]}};
+}
+
+/// Of a body that other shapes cut, from the distances of them all.
+std::vector<mpm::Polygon> cut_outlines(const mpm::Body& body, double z) {
+  mpm::Body uncut = body;
+  uncut.within.clear();
+  uncut.without.clear();
+  const std::vector<mpm::Polygon> whole = outlines_of(uncut, z);
+  const auto distance = [&](double x, double y) {
+    double out = HUGE_VAL;
+    for (const mpm::Polygon& part : whole)
+      out = std::min(out, mpm::nearest({part, false}, {x, y, z}).distance);
+    for (const mpm::Solid& solid : body.within)
+      out = std::max(out, nearest(solid, {x, y, z}).distance);
+    for (const mpm::Solid& solid : body.without)
+      out = std::max(out, -nearest(solid, {x, y, z}).distance);
+    return out;
+  };
+  const auto [low, high] = around(body);
+  std::vector<mpm::Polygon> found;
+  if (whole.empty()) return found;
+  for (const mpm::Outline& outline : mpm::outlines_of(distance, low, high))
+    found.push_back(joined(outline));
+  return found;
+}
+
+/// x and y of its corners, and of the first again.
+std::pair<std::vector<double>, std::vector<double>> closed_line(const mpm::Polygon& polygon) {
+  std::vector<double> xs, ys;
+  for (std::size_t k = 0; k <= polygon.corners.size(); ++k) {
+    xs.push_back(polygon.corners[k % polygon.corners.size()][0]);
+    ys.push_back(polygon.corners[k % polygon.corners.size()][1]);
+  }
+  return {xs, ys};
+}
+
 void draw_surfaces(Axes& axes, const mpm::Scene& scene, const Section& section) {
   std::vector<std::string> names;
   for (const mpm::Surface& surface : scene.surfaces)
@@ -179,21 +232,26 @@ void draw_surfaces(Axes& axes, const mpm::Scene& scene, const Section& section) 
     for (std::size_t k = 0; k < names.size(); ++k) legend += (k == 0 ? ": " : ", ") + names[k];
   }
   for (const mpm::Surface& surface : scene.surfaces) {
-    const mpm::Polygon outline = surface.outline(section.time_s, section.middle(), {0.0, 0.0},
-                                                 {scene.domain[0], scene.domain[1]});
-    if (outline.corners.size() < 3) continue;
-    std::vector<double> xs, ys;
-    for (std::size_t k = 0; k <= outline.corners.size(); ++k) {
-      xs.push_back(outline.corners[k % outline.corners.size()][0]);
-      ys.push_back(outline.corners[k % outline.corners.size()][1]);
+    const std::vector<mpm::Outline> outlines = surface.outlines(
+        section.time_s, section.middle(), {0.0, 0.0}, {scene.domain[0], scene.domain[1]});
+    const mpm::Polygon* largest = nullptr;
+    for (const mpm::Outline& outline : outlines) {
+      if (!surface.solid.hollow) {
+        const auto [xs, ys] = closed_line(joined(outline));
+        axes.area("", xs, ys, drawn_in(Colour::grey, 1.0));
+      }
+      for (const mpm::Polygon& ring : outline) {
+        const auto [xs, ys] = closed_line(ring);
+        axes.line(std::exchange(legend, ""), xs, ys, drawn_in(Colour::black, outline_px));
+      }
+      if (largest == nullptr || mpm::piece_of(outline.front()).area > mpm::piece_of(*largest).area)
+        largest = &outline.front();
     }
-    if (!surface.solid.hollow) axes.area("", xs, ys, drawn_in(Colour::grey, 1.0));
-    axes.line(std::exchange(legend, ""), xs, ys, drawn_in(Colour::black, outline_px));
-    if (section.explained && surface.moves())
+    if (section.explained && surface.moves() && largest != nullptr)
       draw_motion(axes, scene,
                   {surface.name,
-                   mpm::piece_of(outline).centroid,
-                   farthest(outline, surface.pivot),
+                   mpm::piece_of(*largest).centroid,
+                   farthest(*largest, surface.pivot),
                    {surface.velocity[0], surface.velocity[1]},
                    surface.spin,
                    surface.pivot,
@@ -298,7 +356,17 @@ std::vector<EdgeStretch> edge_stretches(const mpm::Scene& scene, double z) {
 }
 
 std::vector<mpm::Polygon> outlines_of(const mpm::Body& body, double z) {
+  if (!body.within.empty() || !body.without.empty()) return cut_outlines(body, z);
   if (body.polygon) return {*body.polygon};
+  if (body.solid) {
+    mpm::Surface alike;
+    alike.solid = *body.solid;
+    const auto [low, high] = around(body);
+    std::vector<mpm::Polygon> found;
+    for (const mpm::Outline& outline : alike.outlines(0.0, z, low, high))
+      found.push_back(joined(outline));
+    return found;
+  }
   const auto rectangle = [&](double from, double to) {
     const double low = body.origin[1], high = low + body.size[1];
     return mpm::Polygon{{{from, low}, {to, low}, {to, high}, {from, high}}};
@@ -353,6 +421,27 @@ Colour colour_of_body(std::size_t body) {
   return order[body % order.size()];
 }
 
+std::string legend_name_of(const mpm::Scene& scene, std::size_t body) {
+  if (body < most_named) return name_of(scene, body);
+  return body == most_named ? fmt::format("and {} more", scene.bodies.size() - most_named) : "";
+}
+
+void draw_bodies(Axes& axes, const mpm::Scene& scene, std::span<const std::int32_t> body,
+                 std::span<const double> xs, std::span<const double> ys, double diameter) {
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    Style style;
+    style.colour = colour_of_body(k);
+    style.diameter = diameter;
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < body.size(); ++i)
+      if (static_cast<std::size_t>(body[i]) == k) {
+        x.push_back(xs[i]);
+        y.push_back(ys[i]);
+      }
+    axes.points(legend_name_of(scene, k), x, y, style);
+  }
+}
+
 Axes& add_section(Figure& figure, const mpm::Scene& scene) {
   figure.panel_width_px = largest_width_px;
   figure.panel_height_px = largest_height_px;
@@ -376,8 +465,8 @@ void draw_surroundings(Axes& axes, const mpm::Scene& scene, const Section& secti
         probe.name += fmt::format(" (z = {:.4g} m)", probe.place[2]);
     return places;
   };
-  draw_places(axes, in_view(scene.probes), false, section.explained);
-  draw_places(axes, in_view(section.tracers), true, section.explained);
+  draw_places(axes, in_view(scene.probes), false);
+  draw_places(axes, in_view(section.tracers), true);
   draw_gravity(axes, scene);
 }
 
@@ -397,18 +486,22 @@ void draw_inflow(Axes& axes, const mpm::Scene& scene, const mpm::Inflow& inflow,
   axes.label({tip[0], tip[1], text});
 }
 
-void draw_places(Axes& axes, const std::vector<mpm::Probe>& places, bool tracers, bool explained) {
-  if (places.empty()) return;
-  std::vector<double> xs, ys;
-  for (const mpm::Probe& probe : places) {
-    xs.push_back(probe.place[0]);
-    ys.push_back(probe.place[1]);
-    axes.label({probe.place[0], probe.place[1], probe.name});
-  }
+void draw_places(Axes& axes, const std::vector<mpm::Probe>& places, bool tracers) {
   Style style = drawn_in(Colour::vermillion, outline_px);
   style.marker = tracers ? Marker::ring : Marker::cross;
   style.marker_px = 11.0;
-  axes.points(!explained ? "" : tracers ? "tracer" : "probe", xs, ys, style);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto& [x, y, z] = places[k].place;
+    axes.label({x, y, tracers ? places[k].name : fmt::format("{}", k + 1)});
+    std::string name;
+    if (tracers && k == 0)
+      name = "tracer";
+    else if (!tracers && k < most_named)
+      name = fmt::format("{}: {}", k + 1, places[k].name);
+    else if (!tracers && k == most_named)
+      name = fmt::format("{} to {}: more probes", k + 1, places.size());
+    axes.points(name, std::array{x}, std::array{y}, style);
+  }
 }
 
 }  // namespace repose::report

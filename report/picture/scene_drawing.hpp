@@ -4,7 +4,9 @@
 /// material comes in, where it is looked at.
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,14 @@ std::vector<mpm::Polygon> outlines_of(const mpm::Body& body, double z);
 std::string name_of(const mpm::Scene& scene, std::size_t body);
 /// The colour of a body in pictures where these are told apart.
 Colour colour_of_body(std::size_t body);
+/// name_of() for a legend no taller than its panel: of many bodies the first, then how many more,
+/// then nothing.
+std::string legend_name_of(const mpm::Scene& scene, std::size_t body);
+
+/// Bodies by colour: points at (xs, ys) of the bodies whose numbers are in `body`, each a disc of
+/// that diameter [m].
+void draw_bodies(Axes& axes, const mpm::Scene& scene, std::span<const std::int32_t> body,
+                 std::span<const double> xs, std::span<const double> ys, double diameter);
 
 /// A panel for the box of a scene, to scale.
 Axes& add_section(Figure& figure, const mpm::Scene& scene);
@@ -61,7 +71,8 @@ void draw_inflow(Axes& axes, const mpm::Scene& scene, const mpm::Inflow& inflow,
                  const std::array<double, 2>& from, const std::array<double, 2>& to,
                  const std::array<double, 2>& inwards, double length, bool explained);
 
-/// A cross at each place, or a ring where they are tracers, with its name.
-void draw_places(Axes& axes, const std::vector<mpm::Probe>& places, bool tracers, bool explained);
+/// A cross with a number at each place, whose names stand in the legend; or where they are tracers
+/// rings with their names.
+void draw_places(Axes& axes, const std::vector<mpm::Probe>& places, bool tracers);
 
 }  // namespace repose::report

@@ -85,35 +85,9 @@ std::string subtitle_of(const mpm::Scene& scene, const mpm::Estimate& estimate,
   return line + "; edges: " + edges_line(scene);
 }
 
-/// Names that are left to the legend: it is not taller than the panel.
-constexpr std::size_t most_bodies_named = 12;
-std::string legend_name(const mpm::Scene& scene, std::size_t body) {
-  if (body < most_bodies_named) return name_of(scene, body);
-  return body == most_bodies_named
-             ? fmt::format("and {} more", scene.bodies.size() - most_bodies_named)
-             : "";
-}
-
 using Place = std::array<double, 2>;
 
-/// Bodies by colour, with their points: the i-th of the snapshot is at at(i).
-template <class At>
-void draw_points(Axes& axes, const mpm::Scene& scene, const mpm::Simulation::Snapshot& shot,
-                 At&& at) {
-  for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-    Style style;
-    style.colour = colour_of_body(body);
-    std::vector<double> xs, ys;
-    for (std::size_t i = 0; i < shot.body.size(); ++i) {
-      if (static_cast<std::size_t>(shot.body[i]) != body) continue;
-      const Place place = at(i);
-      xs.push_back(place[0]);
-      ys.push_back(place[1]);
-    }
-    style.diameter = 0.75 * point_spacing(scene);  // neighbours are told apart
-    axes.points(legend_name(scene, body), xs, ys, style);
-  }
-}
+constexpr double apart = 0.75;  ///< of a spacing is a point's disc: neighbours are told apart
 
 void draw_area(Axes& axes, std::string name, const std::vector<Place>& corners, Colour colour) {
   Style style;
@@ -129,7 +103,7 @@ void draw_area(Axes& axes, std::string name, const std::vector<Place>& corners, 
 /// The shapes of bodies as the scene gives them, rigid surfaces aside.
 void draw_shapes(Axes& axes, const mpm::Scene& scene, double z, bool named) {
   for (std::size_t body = 0; body < scene.bodies.size(); ++body) {
-    std::string name = named ? legend_name(scene, body) : "";
+    std::string name = named ? legend_name_of(scene, body) : "";
     for (const mpm::Polygon& outline : outlines_of(scene.bodies[body], z))
       draw_area(axes, std::exchange(name, ""), outline.corners, colour_of_body(body));
   }
@@ -149,7 +123,7 @@ Figure section_picture(const mpm::Scene& scene, const mpm::Estimate& estimate,
   if (scene.start_from.empty()) draw_shapes(axes, scene, section.middle(), start == nullptr);
   if (start != nullptr) {
     if (scene.dimensions() == 3) all = all.slice(section.z_m, section.z_m + section.depth_m);
-    draw_points(axes, scene, all, [&](std::size_t i) { return Place{all.x_m[i], all.y_m[i]}; });
+    draw_bodies(axes, scene, all.body, all.x_m, all.y_m, apart * point_spacing(scene));
   }
   draw_surroundings(axes, scene, section);
   return figure;
@@ -180,13 +154,15 @@ Figure plan_picture(const mpm::Scene& scene, const mpm::Estimate& estimate,
     const mpm::Body& of = scene.bodies[body];
     if (of.release || !scene.start_from.empty()) continue;
     const double x = of.origin[0], z = of.origin[2];
-    draw_area(axes, start == nullptr ? legend_name(scene, body) : "",
+    draw_area(axes, start == nullptr ? legend_name_of(scene, body) : "",
               {at(x, z), at(x + of.size[0], z), at(x + of.size[0], z + of.size[2]),
                at(x, z + of.size[2])},
               colour_of_body(body));
   }
-  if (start != nullptr)
-    draw_points(axes, scene, all, [&](std::size_t i) { return at(all.x_m[i], all.z_m[i]); });
+  if (start != nullptr) {
+    for (double& z : all.z_m) z = height - z;
+    draw_bodies(axes, scene, all.body, all.x_m, all.z_m, apart * point_spacing(scene));
+  }
   // the box, whose sides are edges: left, right, near to the north and far to the south
   const double width = scene.domain[0], depth = scene.domain[2];
   const std::array<std::array<double, 2>, 4> corners{at(0.0, 0.0), at(width, 0.0), at(width, depth),
@@ -224,12 +200,8 @@ Figure plan_picture(const mpm::Scene& scene, const mpm::Estimate& estimate,
                 along_z ? std::array{inwards, 0.0} : std::array{0.0, -inwards},
                 0.07 * std::max(width, depth), true);
   }
-  const auto from_above = [&](std::vector<mpm::Probe> places) {
-    for (mpm::Probe& probe : places) probe.place = {probe.place[0], height - probe.place[2], 0.0};
-    return places;
-  };
-  draw_places(axes, from_above(scene.probes), false, true);
-  draw_places(axes, from_above(scene.tracers), true, true);
+  draw_places(axes, from_above(terrain, scene.probes), false);
+  draw_places(axes, from_above(terrain, scene.tracers), true);
   return figure;
 }
 

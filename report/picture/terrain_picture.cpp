@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "io/level_lines.hpp"
+#include "report/picture/scene_drawing.hpp"
 #include "report/plot/figure.hpp"
 #include "study/run/terrain_result.hpp"
 
@@ -69,6 +70,8 @@ void add_regions(Axes& axes, std::string name, const io::Raster& map,
   }
 }
 
+}  // namespace
+
 io::Lattice middles(const io::Raster& map) {
   return {map.columns, map.rows,  map.west + 0.5 * map.cell, map.north() - 0.5 * map.cell, map.cell,
           -map.cell,   map.values};
@@ -84,12 +87,21 @@ std::vector<io::Region> released(const mpm::Terrain& terrain) {
   return {};
 }
 
-}  // namespace
-
 double contour_step(const mpm::Terrain& terrain) {
   const auto [lowest, highest] =
       std::minmax_element(terrain.ground_map.values.begin(), terrain.ground_map.values.end());
   return *highest > *lowest ? round_step((*highest - *lowest) / 25.0) : 0.0;
+}
+
+std::vector<double> contour_levels(const mpm::Terrain& terrain) {
+  const auto [lowest, highest] =
+      std::minmax_element(terrain.ground_map.values.begin(), terrain.ground_map.values.end());
+  const double step = contour_step(terrain);
+  std::vector<double> levels;
+  if (step > 0.0)
+    for (double level = step * std::ceil(*lowest / step); level <= *highest; level += step)
+      levels.push_back(level);
+  return levels;
 }
 
 void size_for_plan(Figure& figure, const mpm::Terrain& terrain) {
@@ -115,13 +127,16 @@ Axes& add_plan(Figure& figure, const mpm::Terrain& terrain) {
   Style contour;
   contour.colour = Colour::grey;
   contour.width_px = 0.6;
-  const double step = contour_step(terrain);
-  const auto [lowest, highest] = std::minmax_element(ground.values.begin(), ground.values.end());
-  for (double level = step * std::ceil(*lowest / step); step > 0.0 && level <= *highest;
-       level += step)
+  for (const double level : contour_levels(terrain))
     for (const io::LevelLine& line : io::level_lines(middles(ground), level))
       add_ring(axes, "", ground, line.places, line.closed, contour);
   return axes;
+}
+
+std::vector<mpm::Probe> from_above(const mpm::Terrain& terrain, std::vector<mpm::Probe> places) {
+  for (mpm::Probe& at : places)
+    at.place = {at.place[0], terrain.ground_map.height() - at.place[2], 0.0};
+  return places;
 }
 
 void draw_release(Axes& axes, const mpm::Terrain& terrain) {
@@ -170,6 +185,8 @@ void draw_terrain_picture(const mpm::Simulation& simulation, const std::filesyst
     edge.colour = Colour::vermillion;
     add_regions(axes, "reached", ground, reached, edge);
     draw_release(axes, terrain);
+    draw_places(axes, from_above(terrain, scene.probes), false);
+    draw_places(axes, from_above(terrain, section_of(simulation).tracers), true);
   }
   figure.render_svg(path);
 }

@@ -57,7 +57,7 @@ class FlowReader {
       : flow_(flow),
         scene_(scene),
         body_(scene.bodies.at(0)) {
-    need(scene.dimensions() == 2 && scene.bodies.size() == 1 && !body_.disc && !body_.polygon &&
+    need(scene.dimensions() == 2 && scene.bodies.size() == 1 && is_box(body_) &&
              scene.surfaces.empty() && scene.inflows.empty(),
          "one box in the plane, without surfaces");
     need(scene.left.kind == Wall::Kind::periodic && scene.right.kind == Wall::Kind::periodic,

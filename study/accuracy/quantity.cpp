@@ -97,8 +97,12 @@ std::optional<VectorXd> start_of(const SweepRun& run, Quantity q, double bin) {
     if (column == run.series.end() || column->second.empty()) return {};
     return VectorXd::Constant(1, column->second.front());
   }
-  // surfaces cut bodies, by how much nobody says
-  if (q != Quantity::profile || scene.dimensions() == 3 || !scene.surfaces.empty()) return {};
+  // surfaces and other shapes cut bodies, by how much nobody says
+  if (q != Quantity::profile || scene.dimensions() == 3 || !scene.surfaces.empty() ||
+      std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const mpm::Body& body) {
+        return mpm::is_cut(body) && !mpm::is_plain_polygon(body);
+      }))
+    return {};
   VectorXd shares = VectorXd::Zero(static_cast<Index>(std::lround(scene.domain[0] / bin)));
   for (const mpm::Body& body : scene.bodies)
     for (Index i = 0; i < shares.size(); ++i)
@@ -123,7 +127,8 @@ double length_of(const mpm::Scene& scene) {
   for (const mpm::Body& body : scene.bodies)
     area += body.polygon ? mpm::piece_of(*body.polygon).area
             : body.disc  ? M_PI * (std::pow(body.disc->radius, 2) - std::pow(body.disc->hole, 2))
-                         : body.size[0] * body.size[1];
+            : body.solid && scene.dimensions() == 2 ? volume_of(scene, body)
+                                                    : body.size[0] * body.size[1];
   return std::sqrt(area);
 }
 

@@ -141,6 +141,7 @@ std::vector<std::string> beyond_training(const mpm::Scene& scene) {
   const mpm::Body& body = scene.bodies.front();
   if (body.disc) reasons.emplace_back("a round body");
   if (body.polygon) reasons.emplace_back("a body cut to a polygon");
+  if (is_cut(body) && !body.polygon) reasons.emplace_back("a body cut by a surface");
   if (!scene.inflows.empty()) reasons.emplace_back("material that comes in");
   if (!scene.surfaces.empty()) reasons.emplace_back("rigid surfaces");
   if (body.origin[0] > 0.0 || body.origin[1] > 0.0)

@@ -1,9 +1,12 @@
 #include "study/run/run_record.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <utility>
 
 #include <sys/resource.h>
 
@@ -46,7 +49,24 @@ std::string named(std::string_view name, std::size_t dimensions) {
   return std::string(name);
 }
 
-std::vector<std::string> series_columns(std::size_t dimensions) {
+namespace {
+
+using Extent = mpm::Simulation::FlowExtent;
+/// What a flow over a terrain has beside what all runs have.
+constexpr std::array<std::pair<const char*, double Extent::*>, 8> extent_columns{
+    {{"runout_99_m", &Extent::runout_99_m},
+     {"runout_max_m", &Extent::runout_max_m},
+     {"area_m2", &Extent::area_m2},
+     {"reached_m2", &Extent::reached_m2},
+     {"depth_mean_m", &Extent::depth_mean_m},
+     {"depth_max_m", &Extent::depth_max_m},
+     {"speed_mean_m_per_s", &Extent::speed_mean},
+     {"speed_max_m_per_s", &Extent::speed_max}}};
+
+}  // namespace
+
+std::vector<std::string> series_columns(const mpm::Scene& scene) {
+  const std::size_t dimensions = scene.dimensions();
   std::vector<std::string> columns{"time_s",
                                    "step",
                                    "dt_s",
@@ -82,10 +102,12 @@ std::vector<std::string> series_columns(std::size_t dimensions) {
   for (std::string& column : columns)
     if (column == "angular_momentum") column += "_z";
   columns.insert(columns.end(), {"angular_momentum_x", "angular_momentum_y", "momentum_z"});
+  if (scene.terrain)
+    for (const auto& [name, member] : extent_columns) columns.emplace_back(name);
   return columns;
 }
 
-std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensions) {
+std::vector<double> series_values(const mpm::SeriesRow& row, const mpm::Simulation& simulation) {
   std::vector<double> values{row.time_s,
                              static_cast<double>(row.step),
                              row.dt_s,
@@ -116,8 +138,12 @@ std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensi
                              row.density_floor_J_per_m,
                              row.work_residual_J_per_m,
                              row.inflow_kg_per_m};
-  if (dimensions == 3)
+  if (simulation.scene().dimensions() == 3)
     values.insert(values.end(), {row.angular_momentum_x, row.angular_momentum_y, row.momentum_z});
+  if (simulation.scene().terrain) {
+    const Extent extent = simulation.flow_extent();
+    for (const auto& [name, member] : extent_columns) values.push_back(extent.*member);
+  }
   return values;
 }
 
@@ -248,6 +274,13 @@ std::string summary_text(const RunFacts& facts, const RunRecord& record,
   if (simulation.scene().viscosity == mpm::Viscosity::implicit_solve) {
     s["newton_iterations"] = counters.newton_iterations;
     s["cg_iterations"] = counters.cg_iterations;
+  }
+  if (simulation.scene().terrain) {
+    const Extent extent = simulation.flow_extent();
+    for (const auto& [name, member] : extent_columns) s[name] = extent.*member;
+    const mpm::Simulation::PlanMaps plan = simulation.plan_maps();
+    s["largest_depth_m"] = *std::max_element(plan.depth_max_m.begin(), plan.depth_max_m.end());
+    s["largest_speed_m_per_s"] = *std::max_element(plan.speed_max.begin(), plan.speed_max.end());
   }
   if (counters.out_of_balance > 0.0) s["out_of_balance"] = counters.out_of_balance;
   s["sessions"] = record.sessions;

@@ -15,10 +15,10 @@ namespace repose::study {
 /// metre of depth is whole in space, kinetic_J_per_m and kinetic_J.
 std::string named(std::string_view name, std::size_t dimensions);
 
-/// The columns of series.csv, in order, and the values of a row, for a scene in the plane or in
-/// space.
-std::vector<std::string> series_columns(std::size_t dimensions);
-std::vector<double> series_values(const mpm::SeriesRow& row, std::size_t dimensions);
+/// The columns of series.csv, in order, for a scene in the plane or in space, over a terrain with
+/// those of the flow's extent last; and their values now, of which `row` are the diagnostics.
+std::vector<std::string> series_columns(const mpm::Scene& scene);
+std::vector<double> series_values(const mpm::SeriesRow& row, const mpm::Simulation& simulation);
 
 /// Resources used by the process so far.
 struct Usage {

@@ -190,8 +190,7 @@ void Run::start() {
                             folder_.path().string()));
   folder_.remove_old_outputs();
   folder_.write_file("input.toml", request_.input);
-  series_.emplace(
-      io::RowWriter::create(folder_.file("series.csv"), series_columns(scene_.dimensions())));
+  series_.emplace(io::RowWriter::create(folder_.file("series.csv"), series_columns(scene_)));
   open_probes([](fs::path file, std::vector<std::string> columns) {
     return io::RowWriter::create(std::move(file), std::move(columns));
   });
@@ -214,8 +213,8 @@ void Run::resume() {
   record_.continue_from(folder_.file("summary.json"));
   load_checkpoint();
   const double time = simulation_.time();
-  series_.emplace(io::RowWriter::continued(folder_.file("series.csv"),
-                                           series_columns(scene_.dimensions()), time));
+  series_.emplace(
+      io::RowWriter::continued(folder_.file("series.csv"), series_columns(scene_), time));
   open_probes([&](fs::path file, std::vector<std::string> columns) {
     return io::RowWriter::continued(std::move(file), std::move(columns), time);
   });
@@ -313,11 +312,12 @@ void Run::write_due() {
   if (schedule_.row_due(time)) {
     const mpm::SeriesRow row = simulation_.diagnostics();
     record_.include(row);
-    for (const double x : series_values(row, scene_.dimensions()))
+    const std::vector<double> values = series_values(row, simulation_);
+    for (const double x : values)
       if (!std::isfinite(x))
         throw mpm::NumericalFailure(fmt::format(
             "step {} at t = {:.6g} s: a figure of the series is not finite", row.step, time));
-    series_->row(series_values(row, scene_.dimensions()));
+    series_->row(values);
     write_probes();
   }
   if (frames_ && schedule_.frame_due(time)) write_frame();
@@ -401,9 +401,9 @@ io::ExitCode Run::finish() {
       {{"event", "end"}, {"status", "done"}, {"exit", 0}, {"folder", folder_.path().string()}});
   std::string files = drawn ? "final.svg, series.csv, profile.csv" : "series.csv, profile.csv";
   if (scene_.terrain)
-    files +=
-        ", largest_depth.asc, largest_speed.asc, arrival_time.asc, deposit.asc, "
-        "outlines.geojson";
+    for (const char* const map : {"largest_depth", "largest_speed", "arrival_time", "deposit"})
+      files += fmt::format(", {}.{}", map, scene_.terrain->geotiff ? "tif" : "asc");
+  if (scene_.terrain) files += ", outlines.geojson";
   for (const auto* const frames : {&frames_, &grid_frames_})
     if (*frames) files += fmt::format(", frames/{}", (*frames)->series_path().filename().string());
   const std::string extent =

@@ -1,12 +1,13 @@
 #include "study/run/terrain_result.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <fmt/core.h>
 
+#include "io/coordinate_system.hpp"
 #include "io/level_lines.hpp"
+#include "io/raster_file.hpp"
 
 namespace repose::study {
 namespace {
@@ -71,20 +72,6 @@ io::Raster means(const io::Raster& frame, const Simulation::PlanMaps& plan, Valu
   return map;
 }
 
-/// "EPSG:32632" of a coordinate system in WKT; empty if it has no such number.
-std::string epsg_of(const std::string& wkt) {
-  for (const std::string mark : {"AUTHORITY[\"EPSG\",\"", "ID[\"EPSG\","}) {
-    const std::size_t at = wkt.rfind(mark);
-    if (at == std::string::npos) continue;
-    std::string digits;
-    for (std::size_t k = at + mark.size();
-         k < wkt.size() && std::isdigit(static_cast<unsigned char>(wkt[k])) != 0; ++k)
-      digits += wkt[k];
-    if (!digits.empty()) return "urn:ogc:def:crs:EPSG::" + digits;
-  }
-  return "";
-}
-
 }  // namespace
 
 TerrainMaps terrain_maps(const Simulation& simulation) {
@@ -105,8 +92,13 @@ TerrainMaps terrain_maps(const Simulation& simulation) {
 void write_terrain_maps(const io::ResultFolder& folder, const Simulation& simulation) {
   const mpm::Terrain& terrain = *simulation.scene().terrain;
   const TerrainMaps maps = terrain_maps(simulation);
+  constexpr int digits = 3;  // mm and ms
   const auto write = [&](const std::string& name, const io::Raster& map) {
-    folder.write_file(name + ".asc", io::esri_grid_text(map, 3));
+    if (terrain.geotiff) {
+      folder.write_file(name + ".tif", io::geotiff_of(map, digits, terrain.crs));
+      return;
+    }
+    folder.write_file(name + ".asc", io::esri_grid_text(map, digits));
     if (!terrain.crs.empty()) folder.write_file(name + ".prj", terrain.crs);
   };
   write("largest_depth", maps.largest_depth_m);
@@ -119,21 +111,25 @@ void write_terrain_maps(const io::ResultFolder& folder, const Simulation& simula
                               terrain.ground_map.north(), plan.h, -plan.h, depth},
                              plan.least_depth);
   };
-  folder.write_file("outlines.geojson", io::geojson_text({{"reached", outline(plan.depth_max_m)},
-                                                          {"deposit", outline(plan.depth_m)}},
-                                                         epsg_of(terrain.crs)));
+  const std::string epsg = io::epsg_of(terrain.crs);
+  folder.write_file(
+      "outlines.geojson",
+      io::geojson_text({{"reached", outline(plan.depth_max_m)}, {"deposit", outline(plan.depth_m)}},
+                       epsg.empty() ? "" : "urn:ogc:def:crs:EPSG::" + epsg));
 }
 
 std::string flow_extent(const Simulation& simulation) {
   const Simulation::PlanMaps plan = simulation.plan_maps();
+  const Simulation::FlowExtent extent = simulation.flow_extent();
   const auto largest = [](const std::vector<double>& values) {
     return *std::max_element(values.begin(), values.end());
   };
-  const auto reached = std::count_if(plan.arrival_s.begin(), plan.arrival_s.end(),
-                                     [](double t) { return t < HUGE_VAL; });
-  return fmt::format("largest depth {:.3g} m, largest speed {:.3g} m/s, {:.4g} m² reached",
-                     largest(plan.depth_max_m), largest(plan.speed_max),
-                     static_cast<double>(reached) * plan.h * plan.h);
+  return fmt::format(
+      "largest depth {:.3g} m, largest speed {:.3g} m/s, {:.4g} m² reached, run-out {:.4g} m (99 "
+      "%), "
+      "{:.4g} m (farthest)",
+      largest(plan.depth_max_m), largest(plan.speed_max), extent.reached_m2, extent.runout_99_m,
+      extent.runout_max_m);
 }
 
 }  // namespace repose::study

@@ -21,11 +21,13 @@ struct TerrainMaps {
 /// volume of a map of depths is that of the points (but for what lies beyond the map).
 TerrainMaps terrain_maps(const mpm::Simulation& simulation);
 
-/// Writes largest_depth.asc, largest_speed.asc, arrival_time.asc, deposit.asc and outlines.geojson,
-/// and a .prj beside each map where the ground's has one. Errors: IoError.
+/// Writes the maps largest_depth, largest_speed, arrival_time and deposit, as GeoTIFFs (.tif) where
+/// the ground was read through GDAL, else as ESRI ASCII grids (.asc) with a .prj beside each where
+/// the ground's has one; and outlines.geojson. Errors: IoError, TableError.
 void write_terrain_maps(const io::ResultFolder& folder, const mpm::Simulation& simulation);
 
-/// "largest depth 7.8 m, largest speed 42 m/s, 1.002e+05 m² reached".
+/// "largest depth 7.8 m, largest speed 42 m/s, 1.002e+05 m² reached, run-out 863 m (99 %), 912 m
+/// (farthest)".
 std::string flow_extent(const mpm::Simulation& simulation);
 
 }  // namespace repose::study

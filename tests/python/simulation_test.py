@@ -221,6 +221,57 @@ class Folders(unittest.TestCase):
             with self.assertRaisesRegex(KeyError, "did you mean 'series'"):
                 result.table("seris")
 
+    def test_maps_of_a_terrain(self):
+        law = dict(name="mu_i", mu_0=0.38, mu_d=0.57, I_0=0.28, d=0.05, rho_p=2000, rho_0=1300, K=1e6)
+        with tempfile.TemporaryDirectory() as folder:
+            rows, columns, cell = 12, 20, 3.0
+            header = f"ncols {columns}\nnrows {rows}\nxllcorner 100\nyllcorner 200\ncellsize {cell}\n"
+
+            def write(name, values):
+                path = os.path.join(folder, name)
+                with open(path, "w", encoding="utf-8") as out:
+                    out.write(header)
+                    np.savetxt(out, values, fmt="%.3f")
+                return path
+            east = np.tile(500.0 - 1.2 * np.arange(columns), (rows, 1))
+            depth = np.zeros((rows, columns))
+            depth[4:8, 3:7] = 2.0  # 12 m by 12 m
+            scene = {"scene": {"end_time": 1.5}, "terrain": {
+                        "ground": write("ground.asc", east), "release": write("release.asc", depth), "friction": 0.2},
+                     "body": [{"shape": "release", "law": law}], "grid": {"h": 1.5}}
+            sim = repose.Simulation(scene, threads=1)
+            start = sim.maps()["deposit"]
+            self.assertEqual(start.values.shape, (rows, columns))
+            self.assertEqual((start.west, start.south, start.cell), (100.0, 200.0, cell))
+            self.assertEqual(start.extent, (100.0, 160.0, 200.0, 236.0))
+            self.assertEqual(start.transform, (100.0, 3.0, 0.0, 236.0, 0.0, -3.0))
+            # the release is 288 m³, two metres deep within it; it lies around x = 115, y = 218
+            self.assertAlmostEqual(start.values.sum() * cell**2, 288.0, delta=288.0 * 1e-12)
+            self.assertAlmostEqual(start.at(115.0, 218.0), 2.0, delta=1e-12)
+            self.assertAlmostEqual((start.values * start.x).sum() / start.values.sum(), 115.0, delta=1e-9)
+            self.assertAlmostEqual((start.values.sum(axis=1) * start.y).sum() / start.values.sum(), 218.0, delta=1e-9)
+            self.assertTrue(np.isnan(start.at(0.0, 0.0)))
+            sim.run()
+            result = repose.run(scene, os.path.join(folder, "out"), quiet=True, plot=False, threads=1)
+            self.assertEqual(list(result.maps), ["largest_depth", "largest_speed", "arrival_time", "deposit"])
+            for name, now in sim.maps().items():  # files keep three digits after the point
+                np.testing.assert_allclose(result.maps[name].values, now.values, atol=0.5e-3 + 1e-12, err_msg=name)
+            self.assertEqual(sim.diagnostics()["runout_99_m"], result.series["runout_99_m"][-1])
+            self.assertGreater(result.maps["largest_speed"].values.max(), 0.3)
+            self.assertEqual(repose.Map.read(os.path.join(folder, "ground.asc")).at(101.0, 201.0), 500.0)
+            with self.assertRaisesRegex(KeyError, "did you mean 'deposit'"):
+                result.maps["depositt"]
+            with self.assertRaisesRegex(repose.InputError, "no key of an ESRI ASCII grid|nor a raster"):
+                broken = os.path.join(folder, "broken.txt")
+                with open(broken, "w", encoding="utf-8") as out:
+                    out.write("nothing\n")
+                repose.Map.read(broken)
+            with self.assertRaises(OSError):
+                repose.Map.read(os.path.join(folder, "nothing.asc"))
+            self.assertEqual(len(result.plot().axes), 6)  # series, energies, two maps with their colour bars
+        with self.assertRaisesRegex(repose.InputError, "only a scene with a terrain"):
+            repose.Simulation("flat_mu_i", threads=1, **COARSE).maps()
+
     def test_interrupt_leaves_a_checkpoint_that_a_run_goes_on_from(self):
         program = ("import repose, sys\n"
                    "try:\n"

@@ -106,6 +106,68 @@ TEST_F(ReportPageTest, WorksInABrowser) {
   }
 }
 
+// Bodies, a gate that moves, probes, a tracer, what comes in; and a map with what flows over it.
+TEST_F(ReportPageTest, ShowsWhatStandsAroundTheMaterial) {
+  if (browser().empty()) GTEST_SKIP() << "no Chromium here: scripts/packages check installs it";
+  const std::string law =
+      "law = { name = \"mu_i\", mu_0 = 0.38, mu_d = 0.57, I_0 = 0.28, d = 5e-3, rho_p = 2000, "
+      "rho_0 = 1300, K = 1e5 }\n";
+  std::ofstream(base_ / "gate.toml")
+      << "[scene]\nend_time = 0.04\n[domain]\nsize = [0.6, 0.4]\nright = \"open\"\n"
+         "[[body]]\nname = \"lower\"\nsize = [0.1, 0.1]\n"
+      << law << "[[body]]\nname = \"upper\"\norigin = [0.0, 0.1]\nsize = [0.1, 0.1]\n"
+      << law
+      << "[[surface]]\nname = \"door\"\nshape = \"polygon\"\n"
+         "corners = [[0.1, 0.0], [0.175, 0.0], [0.175, 0.25], [0.1, 0.25]]\nvelocity = [0.0, 1.0]\n"
+         "[[inflow]]\nedge = \"top\"\nfrom = 0.4\nto = 0.5\nspeed = 0.5\n"
+         "[[probe]]\nname = \"foot\"\nplace = [0.05, 0.02]\n"
+         "[[probe]]\nname = \"ahead\"\nplace = [0.25, 0.02]\n"
+         "[[tracer]]\nname = \"top\"\nplace = [0.05, 0.18]\n"
+         "[grid]\nh = 0.025\n[output]\nseries_interval = 0.002\nframe_interval = 0.01\n";
+  std::ofstream ground(base_ / "ground.asc"), release(base_ / "release.asc");
+  for (auto* const map : {&ground, &release})
+    *map << "ncols 20\nnrows 12\nxllcorner 500\nyllcorner 800\ncellsize 3\n";
+  for (int row = 0; row < 12; ++row)
+    for (int column = 0; column < 20; ++column) {
+      ground << 500.0 - 1.2 * column << (column < 19 ? ' ' : '\n');
+      release << (column >= 3 && column < 7 && row >= 4 && row < 8 ? 2 : 0)
+              << (column < 19 ? ' ' : '\n');
+    }
+  ground.close();
+  release.close();
+  std::ofstream(base_ / "slope.toml")
+      << "[scene]\nend_time = 0.5\n[terrain]\nground = \"ground.asc\"\nrelease = \"release.asc\"\n"
+         "friction = 0.2\n[[body]]\nshape = \"release\"\n[body.law]\nname = \"mu_i\"\nmu_0 = 0.38\n"
+         "mu_d = 0.57\nI_0 = 0.28\nd = 0.05\nrho_p = 2000\nrho_0 = 1300\nK = 1e6\n[grid]\nh = 1.5\n"
+         "[[probe]]\nname = \"road\"\nplace = [24.0, 12.0, 18.0]\n"
+         "[[tracer]]\nname = \"stone\"\nplace = [15.0, 18.0, 18.0]\n"
+         "[output]\nseries_interval = 0.05\nframe_interval = 0.1\n";
+  ASSERT_EQ(repose("run gate.toml --quiet -o gate"), 0) << err_;
+  ASSERT_EQ(repose("run slope.toml --quiet -o slope"), 0) << err_;
+  struct Shown {
+    const char* folder;
+    const char* marks;
+  };
+  for (const auto& [folder, marks] : {Shown{"gate", "1 surfaces 2 probes 1 tracers no contours"},
+                                      Shown{"slope", "0 surfaces 1 probes 1 tracers contours"}}) {
+    ASSERT_EQ(repose(std::string("report ") + folder + " -o page.html"), 0) << err_;
+    for (const int width : {390, 1280}) {
+      const std::string verdict = self_test("page.html", width);
+      EXPECT_EQ(verdict.substr(0, 7), "passed:") << verdict << "\nin " << width << " px";
+      EXPECT_NE(verdict.find(marks), verdict.npos) << verdict;
+      EXPECT_EQ(err_.find("CONSOLE"), err_.npos) << err_;
+    }
+    const std::string page = content_of(base_ / "page.html");
+    EXPECT_EQ(page.find("the animation shows points alone"), page.npos);
+  }
+  // without its maps a page is made all the same, and says what it lacks
+  fs::remove(base_ / "ground.asc");
+  ASSERT_EQ(repose("report slope -o page.html"), 0) << err_;
+  EXPECT_NE(content_of(base_ / "page.html").find("the animation shows points alone"),
+            std::string::npos);
+  EXPECT_EQ(self_test("page.html", 1280).substr(0, 7), "passed:");
+}
+
 TEST_F(ReportPageTest, TheSameFoldersGiveTheSamePage) {
   ASSERT_EQ(repose("run tiny.toml --quiet -o one"), 0) << err_;
   ASSERT_EQ(repose("report one --quiet"), 0) << err_;

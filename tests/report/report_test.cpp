@@ -192,6 +192,23 @@ TEST(PackFrames, AVectorIsItsMagnitudeAndTheThirdDimensionIsTold) {
   EXPECT_EQ(packed["fields"][0]["largest"], 5.0);
 }
 
+// Over a terrain: z is south, the page's y north of the map's lower edge.
+TEST(PackFrames, FromAboveTheSouthIsBelow) {
+  const Json packed = pack_frames(
+      1,
+      [](std::size_t) {
+        io::Frame frame;
+        frame.points = 2;
+        frame.position_m = {0, 7, 10, 1, 8, 30};
+        return frame;
+      },
+      {}, 100.0);
+  EXPECT_EQ(packed["depth"], false);
+  EXPECT_EQ(packed["y"], Json::parse("[70, 90]"));
+  const std::vector<std::uint8_t> xy = decoded(packed["xy"].get<std::string>());
+  EXPECT_EQ(xy[2] + 256 * xy[3], 65534);
+}
+
 TEST(ReportPage, NothingInAResultIsMarkup) {
   EXPECT_EQ(html_text("<a b=\"c\" d='e'>&"), "&lt;a b=&quot;c&quot; d=&#39;e&#39;&gt;&amp;");
   const Json hostile{{"label", "</script><script>alert(1)</script>"},

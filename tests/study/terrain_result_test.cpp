@@ -9,7 +9,10 @@
 
 #include "input/read_scene.hpp"
 #include "input/resolved_scene.hpp"
+#include "io/coordinate_system.hpp"
 #include "io/level_lines.hpp"
+#include "io/raster_file.hpp"
+#include "study/run/finished_result.hpp"
 #include "study/run/run_scene.hpp"
 #include "tests/scratch_folder.hpp"
 
@@ -204,6 +207,106 @@ TEST_F(TerrainFileTest, ARunLeavesMapsAndOutlines) {
   fs::remove(folder_.path() / "ground.prj");
   ASSERT_EQ(run(result), io::ExitCode::done);
   EXPECT_FALSE(fs::exists(result / "deposit.prj"));
+}
+
+// The same scene from a GeoTIFF of the same numbers: the same maps, as GeoTIFFs in the ground's
+// coordinates.
+TEST_F(TerrainFileTest, AGeoTiffGivesWhatAnEsriGridGives) {
+  if (io::gdal_library().empty())
+    GTEST_SKIP() << "built without GDAL: scripts/packages maps installs it";
+  const fs::path grids = folder_.path() / "grids", tiffs = folder_.path() / "tiffs";
+  ASSERT_EQ(run(grids), io::ExitCode::done);
+  const std::string utm =
+      "PROJCS[\"UTM 32N\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,"
+      "298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],"
+      "PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],"
+      "PARAMETER[\"central_meridian\",9],PARAMETER[\"scale_factor\",0.9996],"
+      "PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1],"
+      "AUTHORITY[\"EPSG\",\"32632\"]]";
+  for (const char* name : {"ground", "release"}) {
+    const io::RasterFile grid = io::read_raster(folder_.path() / (std::string(name) + ".asc"));
+    // what single precision keeps of these heights, written out whole: multiples of 2⁻¹⁴ m
+    io::Raster map = grid.raster;
+    std::ofstream(folder_.path() / (std::string(name) + ".tif"), std::ios::binary)
+        << io::geotiff_of(map, 6, utm);
+    for (double& x : map.values) x = static_cast<float>(std::nearbyint(x * 1e6) / 1e6);
+    write(std::string(name) + ".asc", io::esri_grid_text(map, 20));
+  }
+  ASSERT_EQ(run(grids), io::ExitCode::done);
+  std::string scene = text("release = \"release.tif\"\nfriction = 0.2\n");
+  scene.replace(scene.find("ground.asc"), 10, "ground.tif");
+  write("scene.toml", scene);
+  ASSERT_EQ(run(tiffs), io::ExitCode::done);
+  EXPECT_EQ(content_of(tiffs / "series.csv"), content_of(grids / "series.csv"));
+  for (const std::string name : {"largest_depth", "largest_speed", "arrival_time", "deposit"}) {
+    EXPECT_FALSE(fs::exists(tiffs / (name + ".asc")));
+    const io::RasterFile grid = io::read_raster(grids / (name + ".asc"));
+    const io::RasterFile tiff = io::read_raster(tiffs / (name + ".tif"));
+    EXPECT_EQ(tiff.raster.west, 100.0);
+    EXPECT_EQ(tiff.raster.south, 200.0);
+    EXPECT_EQ(io::epsg_of(tiff.crs), "32632");
+    ASSERT_EQ(tiff.raster.values.size(), grid.raster.values.size());
+    for (std::size_t k = 0; k < tiff.raster.values.size(); ++k) {
+      const double a = tiff.raster.values[k], b = grid.raster.values[k];
+      EXPECT_TRUE((std::isnan(a) && std::isnan(b)) || a == static_cast<float>(b)) << name << k;
+    }
+  }
+  EXPECT_NE(content_of(tiffs / "outlines.geojson").find("EPSG::32632"), std::string::npos);
+  // the result's own input reads them again, and a changed one is refused
+  std::ofstream(folder_.path() / "input.toml") << content_of(tiffs / "input.toml");
+  input::InputFile again = input::InputFile::read(folder_.path() / "input.toml");
+  EXPECT_TRUE(input::read_scene(again).scene.terrain->geotiff);
+  // in degrees, or in another system than the ground
+  const auto tiff_in = [&](const std::string& system) {
+    std::ofstream(folder_.path() / "release.tif", std::ios::binary)
+        << io::geotiff_of(io::read_raster(folder_.path() / "release.asc").raster, 6, system);
+  };
+  tiff_in(
+      "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
+      "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]");
+  EXPECT_NE(
+      complaint().find("its places are in degrees (WGS 84); metres are needed: gdalwarp -t_srs"),
+      std::string::npos)
+      << complaint();
+  std::string other = utm;
+  other.replace(other.find("32632"), 5, "32633");
+  other.replace(other.find("meridian\",9"), 11, "meridian\",15");
+  tiff_in(other);
+  EXPECT_NE(
+      complaint().find("its coordinate system is EPSG:32633, and that of the ground EPSG:32632"),
+      std::string::npos)
+      << complaint();
+}
+
+TEST_F(TerrainFileTest, AGridInDegreesIsRefused) {
+  write("ground.prj", "GEOGCS[\"GCS_WGS_1984\",UNIT[\"Degree\",0.0174532925199433]]");
+  EXPECT_NE(complaint().find("its places are in degrees (GCS_WGS_1984)"), std::string::npos);
+}
+
+TEST_F(TerrainFileTest, TheSeriesTellsHowFarTheFlowIs) {
+  const fs::path result = folder_.path() / "result";
+  ASSERT_EQ(run(result), io::ExitCode::done);
+  const NumberTable series = read_numbers(result / "series.csv");
+  const auto& farthest = series.at("runout_max_m");
+  const auto& most = series.at("runout_99_m");
+  // 12 m × 12 m, 2 m deep, lie in whole cells of 1 m: all of them at the start
+  EXPECT_EQ(farthest.front(), 0.0);
+  EXPECT_EQ(series.at("depth_max_m").front(), 2.0);
+  // the nodes within carry 2 m, those on the edge half of it, the corners a quarter: all are
+  // reached from a quarter of a cell on, 13 × 13 of them; and the volume is 288 m³
+  EXPECT_NEAR(series.at("area_m2").front(), 169.0, 1e-9);
+  EXPECT_NEAR(series.at("depth_mean_m").front(), 288.0 / 169.0, 1e-12);
+  EXPECT_EQ(series.at("speed_mean_m_per_s").front(), 0.0);
+  // after a second on a slope of 0.4 with friction 0.2 (a frictionless block would have gone
+  // g t²/2 · sin cos = 1.7 m in the plan), with what the edges of the block spread
+  EXPECT_GT(farthest.back(), 0.5);
+  EXPECT_LT(farthest.back(), 6.0);
+  EXPECT_GT(most.back(), 0.3);
+  EXPECT_LE(most.back(), farthest.back());
+  EXPECT_GE(series.at("reached_m2").back(), series.at("area_m2").back());
+  const auto summary = read_summary(result / "summary.json").figures;
+  EXPECT_EQ(summary.at("runout_99_m"), most.back());
+  EXPECT_GE(summary.at("largest_depth_m"), series.at("depth_max_m").back() - 1e-12);
 }
 
 }  // namespace
