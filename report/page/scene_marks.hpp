@@ -14,7 +14,8 @@ namespace repose::report {
 ///      "plan": false, "plan_height": 0,   whether it is seen from above, and then plan_height()
 ///      "edges": [{"kind": "open", "from": [x, y], "to": [x, y]}],  closed, open, periodic, inflow
 ///      "surfaces": [{"name": "gate", "hollow": false,   outlines for each of `times`, or for all:
-///                    "outlines": [[[[x, y], …], …], …]}],  rings, of which one in another is a hole
+///                    "outlines": [[[[x, y], …], …], …]}],  rings, of which one in another is a
+///                    hole
 ///      "probes": [{"name": "toe", "place": [x, y]}],
 ///      "tracers": ["block"],
 ///      "lines": [{"kind": "contour", "places": [[x, y], …]}]}        contour, release
