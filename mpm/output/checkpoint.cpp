@@ -8,13 +8,14 @@
 
 #include <fmt/core.h>
 
+#include "mpm/grid/kernel.hpp"
 #include "mpm/output/hdf5_arrays.hpp"
 #include "mpm/step/simulation_impl.hpp"
 
 namespace repose::mpm {
 namespace {
 
-constexpr std::int64_t format_version = 7;
+constexpr std::int64_t format_version = 8;
 
 /// Every scalar that a run carries along, in one fixed order for both directions.
 template <class Impl, class Real, class Whole>
@@ -66,15 +67,18 @@ void each_scalar(Impl& s, Real&& real, Whole&& whole) {
 }
 
 /// What the steps rely on without asking, of the points of a body: finite numbers, mass, and every
-/// slot in the range of one block, not farther from it than the tile of the block reaches. Throws
+/// slot in the range of one block, its stencil within the nodes that the block touches. Throws
 /// std::runtime_error with what is wrong: a checkpoint may be whole and yet be another scene's, or
 /// that of a program with a fault. Points that wait to be sorted (`moved`) may be anywhere that
 /// their walls let them go.
 template <int dim>
 void require_sound(const PointsOf<dim>& points, std::size_t body,
                    const std::vector<PointBlockOf<dim>>& blocks, const GridOf<dim>& grid,
-                   const Walls& walls, bool moved) {
+                   const Walls& walls, Kernel kernel, bool moved) {
   using F = Layout<dim>;
+  const bool cubic = kernel == Kernel::cubic;
+  const double offset = cubic ? CubicKernel::anchor_offset : QuadraticKernel::anchor_offset;
+  const int after = (cubic ? CubicKernel::rows : QuadraticKernel::rows) - 2;  // the anchor
   const auto fail = [](const char* why) { throw std::runtime_error(why); };
   std::vector<char> taken(points.slots(), 0);
   for (const PointBlockOf<dim>& pb : blocks) {
@@ -99,7 +103,10 @@ void require_sound(const PointsOf<dim>& points, std::size_t body,
         };
         const bool inside = (cell >= 0.0 || !closed(walls.low(a))) &&
                             (cell <= grid.cells()[a] || !closed(walls.high(a)));
-        const bool at_home = cell >= first - 1 && cell <= first + Shape<dim>::cells[a];
+        const double anchor =
+            std::floor(points[F::x + a][s] / grid.h() + offset) - first + Shape<dim>::margin[a];
+        const bool at_home =
+            anchor - 1.0 >= pb.touched[a].begin && anchor + after < pb.touched[a].end;
         const bool padding = s >= range.begin + range.count;
         if (!(at_home || (moved && (padding || inside)))) fail("a point lies outside of its block");
       }
@@ -129,6 +136,10 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   std::vector<std::int64_t> blocks;
   for (const PointBlockOf<dim>& pb : s.grid.point_blocks) {
     blocks.insert(blocks.end(), pb.at.begin(), pb.at.end());
+    for (const TileRows& rows : pb.touched) {
+      blocks.push_back(rows.begin);
+      blocks.push_back(rows.end);
+    }
     for (const SlotRange& range : pb.range) {
       blocks.push_back(static_cast<std::int64_t>(range.begin));
       blocks.push_back(static_cast<std::int64_t>(range.count));
@@ -213,15 +224,19 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
     }
 
     const std::vector<std::int64_t> blocks = hdf5::read<std::int64_t>(file, "blocks");
-    const std::size_t width = dim + 2 * s.bodies.size();
+    const std::size_t width = 3 * dim + 2 * s.bodies.size();
     if (blocks.size() % width != 0) reject("it holds another number of bodies");
     std::vector<PointBlockOf<dim>> restored(blocks.size() / width);
     for (std::size_t k = 0; k < restored.size(); ++k) {
       const std::int64_t* row = blocks.data() + k * width;
-      for (std::size_t i = 0; i < dim; ++i) restored[k].at[i] = static_cast<int>(row[i]);
+      for (std::size_t i = 0; i < dim; ++i) {
+        restored[k].at[i] = static_cast<int>(row[i]);
+        restored[k].touched[i] = {static_cast<int>(row[dim + 2 * i]),
+                                  static_cast<int>(row[dim + 2 * i + 1])};
+      }
       for (std::size_t b = 0; b < s.bodies.size(); ++b)
-        restored[k].range.push_back({static_cast<std::size_t>(row[dim + 2 * b]),
-                                     static_cast<std::size_t>(row[dim + 2 * b + 1])});
+        restored[k].range.push_back({static_cast<std::size_t>(row[3 * dim + 2 * b]),
+                                     static_cast<std::size_t>(row[3 * dim + 2 * b + 1])});
     }
     std::set<std::array<int, dim>> places;
     for (std::size_t k = 0; k < restored.size(); ++k) {
@@ -229,10 +244,14 @@ void Simulation::Impl<dim>::load(const std::filesystem::path& path) {
       for (std::size_t a = 0; a < dim; ++a)
         if (row[a] < 1 || row[a] > GridOf<dim>::block_of_cell(a, s.grid.cells()[a]))
           reject("a block lies outside of the box");
+      for (std::size_t a = 0; a < dim; ++a)
+        if (row[dim + 2 * a] < 0 || row[dim + 2 * a + 1] > Shape<dim>::tile[a])
+          reject("a block touches nodes that are not there");
       if (!places.insert(restored[k].at).second) reject("two of its blocks are one");
     }
     for (std::size_t b = 0; b < s.bodies.size(); ++b)
-      require_sound(s.bodies[b], b, restored, s.grid, s.walls, s.must_sort);
+      require_sound(s.bodies[b], b, restored, s.grid, s.walls, s.scene.kernel,
+                    s.must_sort || s.drift >= s.reach());
     s.grid.restore(std::move(restored));
     s.gravity = s.gravity_now();
   } catch (const io::IoError&) {

@@ -87,8 +87,8 @@ Simulation::Snapshot Simulation::snapshot(Stress of) const {
 }
 
 Simulation::Snapshot Simulation::Snapshot::slice(double from, double to) const {
-  using Column = std::vector<double> Snapshot::*;
-  constexpr std::array<Column, 17> columns{
+  using Values = std::vector<double> Snapshot::*;
+  constexpr std::array<Values, 17> columns{
       &Snapshot::shear_rate,  &Snapshot::mass,     &Snapshot::x_m, &Snapshot::y_m,
       &Snapshot::z_m,         &Snapshot::vx,       &Snapshot::vy,  &Snapshot::vz,
       &Snapshot::density,     &Snapshot::sxx,      &Snapshot::syy, &Snapshot::szz,
@@ -97,7 +97,7 @@ Simulation::Snapshot Simulation::Snapshot::slice(double from, double to) const {
   Snapshot part;
   for (std::size_t k = 0; k < z_m.size(); ++k) {
     if (!(z_m[k] >= from && z_m[k] < to)) continue;
-    for (const Column column : columns) (part.*column).push_back((this->*column)[k]);
+    for (const Values column : columns) (part.*column).push_back((this->*column)[k]);
     part.body.push_back(body[k]);
     part.id.push_back(id[k]);
     if (!shear_strain.empty()) part.shear_strain.push_back(shear_strain[k]);
