@@ -11,8 +11,11 @@
 #include "io/result_folder.hpp"
 #include "models/instruction_set.hpp"
 #include "report/picture/fit_picture.hpp"
+#include "report/picture/posterior_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
+#include "study/fit/journal.hpp"
+#include "study/fit/posterior_record.hpp"
 #include "study/fit/search.hpp"
 #include "study/run/run_record.hpp"
 
@@ -22,6 +25,7 @@ namespace {
 using Json = io::Json;
 
 constexpr std::string_view journal_name = "starts.jsonl";
+constexpr std::string_view chains_name = "chains.jsonl";
 
 class FitRun {
  public:
@@ -43,6 +47,7 @@ class FitRun {
           {fmt::format("--starts-from {} --starts-to {}: this fit has starts 0 to {}, and "
                        "--starts-to is the first one that is left out",
                        arguments.starts_from, arguments.starts_to, file_.options.starts)});
+    if (file_.posterior) check_chains(to);
   }
 
   io::ExitCode run() {
@@ -53,11 +58,11 @@ class FitRun {
       if (!std::filesystem::exists(journal))
         throw io::IoError(journal,
                           "there is no journal of starts; give result folders of `repose fit`");
-      study::merge_into(done, study::read_journal(journal, file_), journal.string());
+      study::merge_into(done, study::read_starts(journal, file_), journal.string());
     }
     if (options_.resume) {
       const std::filesystem::path own = folder_.file(journal_name);
-      study::merge_into(done, study::read_journal(own, file_), own.string());
+      study::merge_into(done, study::read_starts(own, file_), own.string());
     }
     // the journal first: a kill in between must not lose the starts that it holds
     std::string journal = study::journal_head(file_);
@@ -97,29 +102,120 @@ class FitRun {
     folder_.write_file("fitted.toml", study::fitted_toml(file_, result_));
     folder_.write_file("predictions.csv", study::predictions_csv(file_, problem_, result_));
     draw();
-    write_summary(status, before, report);
     tell(status, study::usage().wall_s - before.wall_s);
-    if (interrupted) return io::ExitCode::interrupted;
-    const bool short_of = arguments_.strict && !result_.converged;
+    bool sampled = true;
+    if (file_.posterior && !interrupted && !result_.best().failed) {
+      problem_.interrupt_by([&] { return interrupt.requested(); });
+      sampled = sample();
+    }
+    write_summary(sampled ? status : "interrupted", before, report);
+    if (interrupted || !sampled) return io::ExitCode::interrupted;
+    const bool converged = result_.converged && posterior_.converged;
+    const bool short_of = arguments_.strict && !converged;
     return result_.best().failed || short_of ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
  private:
   /// Called under run_starts' lock: appends the start, whole, so that a kill loses none before it.
   void after(const calibration::StartResult& s) {
-    std::filesystem::path path = folder_.file(journal_name);
-    FILE* out = std::fopen(path.c_str(), "ab");
-    const std::string line = study::journal_line(s);
-    const bool good =
-        out != nullptr && std::fwrite(line.data(), 1, line.size(), out) == line.size();
-    if (out != nullptr && (std::fclose(out) != 0 || !good)) out = nullptr;
-    if (out == nullptr) write_error_ = path.string();
+    const std::filesystem::path path = folder_.file(journal_name);
+    if (!study::append(path, study::journal_line(s))) write_error_ = path.string();
     if (options_.json)
       fmt::print("{}\n", Json{{"event", "start"},
                               {"start", s.index},
                               {"objective", s.optimum.objective},
                               {"why", s.optimum.why}}
                              .dump());
+  }
+
+  /// This share of chains, which is of a fit that has all its starts.
+  void check_chains(int starts_to) {
+    calibration::PosteriorOptions& posterior = *file_.posterior;
+    const int to = arguments_.chains_to < 0 ? posterior.chains : arguments_.chains_to;
+    if (arguments_.chains_from >= to || to > posterior.chains)
+      throw input::BadInput(
+          {fmt::format("--chains-from {} --chains-to {}: this posterior has chains 0 to {}, and "
+                       "--chains-to is the first one that is left out",
+                       arguments_.chains_from, arguments_.chains_to, posterior.chains)});
+    if (arguments_.starts_from > 0 || starts_to < file_.options.starts)
+      throw input::BadInput(
+          {"the posterior is drawn around the best of all starts: share out the starts without it, "
+           "then its chains with --merge of their folders and --chains-from, --chains-to"});
+    // what is merged is all there is
+    posterior.chains_from = arguments_.chains_from;
+    posterior.chains_to = has_merged_chains() ? arguments_.chains_from : to;
+  }
+
+  bool has_merged_chains() const {
+    return std::any_of(arguments_.merge.begin(), arguments_.merge.end(), [](const auto& dir) {
+      return std::filesystem::exists(std::filesystem::path(dir) / chains_name);
+    });
+  }
+
+  /// Draws the posterior around the best end. False if it was interrupted.
+  bool sample() {
+    const study::Usage before = study::usage();
+    const study::Sampler sampler(file_, problem_, result_.best().z);
+    std::vector<calibration::Draw> done;
+    for (const std::string& dir : arguments_.merge) {
+      const std::filesystem::path chains = std::filesystem::path(dir) / chains_name;
+      study::merge_into(done, study::read_chains(chains, sampler), chains.string());
+    }
+    const std::filesystem::path own = folder_.file(chains_name);
+    if (options_.resume) study::merge_into(done, study::read_chains(own, sampler), own.string());
+    std::string journal = study::chains_head(file_, sampler);
+    for (const calibration::Draw& d : done) journal += study::journal_line(d);
+    folder_.write_file(chains_name, journal);
+    posterior_ = study::sample(file_, sampler, {std::move(done), [&](const calibration::Draw& d) {
+                                                  if (!study::append(own, study::journal_line(d)))
+                                                    write_error_ = own.string();
+                                                }});
+    if (!posterior_.complete) {
+      if (!options_.quiet && !options_.json)
+        fmt::print("  posterior: {} of {} chains are drawn\n", posterior_.chains,
+                   file_.posterior->chains);
+      return !problem_.interrupted();
+    }
+    folder_.write_file("posterior.json",
+                       study::posterior_report(file_, sampler, posterior_).dump(2) + "\n");
+    folder_.write_file("posterior.csv", study::draws_csv(file_, posterior_));
+    folder_.write_file("posterior_bands.csv", study::bands_csv(file_, posterior_));
+    attempt("posterior_bands.svg",
+            [&] { return report::posterior_bands_picture(file_, posterior_); });
+    attempt("posterior_corner.svg",
+            [&] { return report::posterior_corner_picture(file_, posterior_); });
+    tell_posterior(sampler, study::usage().wall_s - before.wall_s);
+    return true;
+  }
+
+  void tell_posterior(const study::Sampler& sampler, double seconds) const {
+    if (options_.json) {
+      fmt::print("{}\n", Json{{"event", "posterior"},
+                              {"draws", posterior_.kept},
+                              {"divergent", posterior_.divergent},
+                              {"converged", posterior_.converged},
+                              {"wall_s", seconds}}
+                             .dump());
+      return;
+    }
+    if (options_.quiet) return;
+    fmt::print("  posterior: {} draws of {} chains in {}, {} divergent{}\n", posterior_.kept,
+               posterior_.chains, io::duration_text(seconds), posterior_.divergent,
+               posterior_.converged ? "" : "; NOT CONVERGED");
+    for (const study::QuantitySummary& s : posterior_.summary)
+      fmt::print("  {:<16} {:.5g}{}   90 %: {:.5g} to {:.5g}   R-hat {:.3f}, worth {:.0f} draws\n",
+                 s.name, s.median, s.unit.empty() || s.unit == "-" ? "" : " " + s.unit,
+                 s.interval_90[0], s.interval_90[1], s.convergence.r_hat,
+                 std::min(s.convergence.bulk_ess, s.convergence.tail_ess));
+    for (std::size_t k = 0; k < file_.targets.size(); ++k)
+      for (std::size_t c = 0; c < file_.targets[k].channels.size(); ++c)
+        fmt::print(
+            "  {}{}, {}: {:.0f} % of {} rows within the 90 % band\n", file_.targets[k].name,
+            file_.targets[k].held_out ? " (held out)" : "", file_.targets[k].channels[c].name,
+            100.0 * calibration::share_inside(sampler.posterior.problem().targets()[k].channels[c],
+                                              posterior_.bands[k], static_cast<Eigen::Index>(c)),
+            file_.targets[k].rows());
+    for (const std::string& text : posterior_.complaints) fmt::print("  posterior: {}\n", text);
   }
 
   void tell_coarse_to_fine() const {
@@ -152,17 +248,19 @@ class FitRun {
   }
 
   /// A picture that cannot be drawn is a warning: the figures are in fit.json.
-  void draw() const {
+  template <class Make>
+  void attempt(const char* name, Make&& figure) const {
     if (options_.no_plot) return;
-    const auto attempt = [&](const char* name, auto&& figure) {
-      try {
-        figure().render_svg(folder_.file(name));
-      } catch (const report::PlotError& error) {
-        fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
-      } catch (const std::logic_error& error) {
-        fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
-      }
-    };
+    try {
+      figure().render_svg(folder_.file(name));
+    } catch (const report::PlotError& error) {
+      fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+    } catch (const std::logic_error& error) {
+      fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+    }
+  }
+
+  void draw() const {
     attempt("fit.svg", [&] { return report::fit_picture(file_, problem_, result_); });
     attempt("fit_diagnostics.svg", [&] { return report::fit_diagnostics(file_, result_); });
   }
@@ -213,6 +311,7 @@ class FitRun {
   calibration::Problem problem_;
   io::ResultFolder folder_;
   study::FitResult result_;
+  study::PosteriorResult posterior_;
   std::string write_error_;
 };
 
@@ -232,8 +331,12 @@ Command add_fit(CLI::App& root) {
       "  repose fit FIT.toml --starts-from 0 --starts-to 32 -o shard0     one share of a campaign\n"
       "  repose fit FIT.toml --merge shard0 shard1 -o whole               all shares as one "
       "result\n"
+      "  repose fit FIT.toml --posterior                                  draws of all that the "
+      "data leave open\n"
       "Writes fit.json, fitted.toml (a [law] table), predictions.csv, fit.svg,\n"
-      "fit_diagnostics.svg, starts.jsonl, summary.json and input.toml.");
+      "fit_diagnostics.svg, starts.jsonl, summary.json and input.toml; with a posterior\n"
+      "posterior.json, posterior.csv, posterior_bands.csv, posterior_bands.svg,\n"
+      "posterior_corner.svg and chains.jsonl.");
   const auto options = std::make_shared<CommonOptions>();
   options->seed = 1;
   const auto file = std::make_shared<std::string>();
@@ -245,10 +348,21 @@ Command add_fit(CLI::App& root) {
                "I");
   verb.integer("--starts-to", arguments->starts_to, 1, most_starts,
                "One past the last start of this share", "J");
+  verb.flag("--posterior", arguments->posterior,
+            "Draw from the posterior, as [posterior] says or by default");
+  verb.integer("--chains-from", arguments->chains_from, 0, most_starts,
+               "First chain of this share of the posterior", "I");
+  verb.integer("--chains-to", arguments->chains_to, 1, most_starts,
+               "One past the last chain of this share", "J");
   verb.flag("--strict", arguments->strict, "Exit with 3 if the fit is not converged");
-  verb.option("--merge", arguments->merge, "Take the starts from these result folders", "DIR...");
+  verb.option("--merge", arguments->merge,
+              "Take the starts, and the chains, from these result folders", "DIR...");
   return {verb.app(), options, [options, file, arguments] {
-            return run_fit(input::InputFile::read(*file, options->sets), *arguments, *options);
+            input::InputFile given = input::InputFile::read(*file, options->sets);
+            if (arguments->posterior && !given.root().contains("posterior"))
+              given = given.with(
+                  {fmt::format("posterior.chains={}", calibration::PosteriorOptions{}.chains)});
+            return run_fit(given, *arguments, *options);
           }};
 }
 

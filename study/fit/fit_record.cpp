@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include <fmt/core.h>
 
 #include "input/read_law.hpp"
-#include "io/fingerprint.hpp"
 #include "io/json.hpp"
-#include "io/progress.hpp"
 #include "io/result_folder.hpp"
 #include "models/instruction_set.hpp"
 #include "repose_version.hpp"
+#include "study/fit/journal.hpp"
 
 namespace repose::study {
 namespace {
@@ -21,23 +19,6 @@ using calibration::Optimum;
 using calibration::StartResult;
 using Eigen::Index;
 using Json = io::Json;
-
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-Json list(const Eigen::VectorXd& v) {
-  Json out = Json::array();
-  for (const double x : v) out.push_back(number(x));
-  return out;
-}
-
-Eigen::VectorXd vector(const Json& list) {
-  Eigen::VectorXd v(static_cast<Index>(list.size()));
-  for (Index i = 0; i < v.size(); ++i)
-    v[i] = list[static_cast<std::size_t>(i)].is_null()
-               ? std::nan("")
-               : list[static_cast<std::size_t>(i)].get<double>();
-  return v;
-}
 
 Json json_of(const Optimum& o) {
   Json out;
@@ -57,7 +38,7 @@ Json json_of(const Optimum& o) {
 
 Optimum optimum_of(const Json& j) {
   Optimum o;
-  o.z = vector(j.at("z"));
+  o.z = vector_of(j.at("z"));
   o.objective = j.at("objective").is_null() ? std::numeric_limits<double>::infinity()
                                             : j.at("objective").get<double>();
   o.why = j.at("why").get<std::string>();
@@ -367,63 +348,20 @@ std::string journal_line(const StartResult& start) {
   j["from"] = list(start.from);
   if (start.global.z.size() > 0) j["global"] = json_of(start.global);
   j["optimum"] = json_of(start.optimum);
-  const std::string line = j.dump();
-  return fmt::format("{},\"checksum\":\"{}\"}}\n", line.substr(0, line.size() - 1),
-                     io::fingerprint_of(line));
+  return journal_line(j);
 }
 
-namespace {
-
-/// Whether a line of a journal is the one that was written: its last member is the checksum of the
-/// line without it.
-bool has_own_checksum(const std::string& line, const Json& json) {
-  const std::string sum = json.value("checksum", "");
-  const std::string tail = fmt::format(",\"checksum\":\"{}\"}}", sum);
-  return line.ends_with(tail) &&
-         sum == io::fingerprint_of(line.substr(0, line.size() - tail.size()) + "}");
-}
-
-}  // namespace
-
-std::vector<StartResult> read_journal(const std::filesystem::path& path,
-                                      const input::FitFile& file) {
+std::vector<StartResult> read_starts(const std::filesystem::path& path,
+                                     const input::FitFile& file) {
   std::vector<StartResult> starts;
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return starts;
-  std::ifstream in(path);
-  if (!in) throw io::IoError(path, "cannot read", errno);
-  std::string line;
-  bool first = true;
-  while (std::getline(in, line)) {
-    const bool whole = !in.eof();
-    const auto json = Json::try_parse(line);
-    if (!json || !whole) break;  // cut short by a kill
-    const Json& j = *json;
-    if (!first && !has_own_checksum(line, j)) {
-      io::warn_of_damage(path.string(), "a start is not as it was written",
-                         "so it and those behind it are made again");
-      break;
-    }
-    if (first) {
-      first = false;
-      if (j.value("fingerprint", "") != file.fingerprint)
-        throw input::BadInput(
-            {fmt::format("{}: these starts belong to another fit (input, data or seed "
-                         "differ); use another folder, or start anew without --resume",
-                         path.string())});
-      continue;
-    }
-    try {
-      StartResult s;
-      s.index = j.at("start").get<int>();
-      s.from = vector(j.at("from"));
-      if (j.contains("global")) s.global = optimum_of(j.at("global"));
-      s.optimum = optimum_of(j.at("optimum"));
-      starts.push_back(std::move(s));
-    } catch (const io::Json::Error&) {
-      throw input::BadInput({fmt::format("{}: not a journal of starts", path.string())});
-    }
-  }
+  read_journal(path, "start", file.fingerprint, [&](const Json& j) {
+    StartResult s;
+    s.index = j.at("start").get<int>();
+    s.from = vector_of(j.at("from"));
+    if (j.contains("global")) s.global = optimum_of(j.at("global"));
+    s.optimum = optimum_of(j.at("optimum"));
+    starts.push_back(std::move(s));
+  });
   return starts;
 }
 

@@ -47,14 +47,15 @@ std::vector<std::string> discrepancies(const input::FitFile& file,
 std::string quoted_words(const input::FitFile& file, const FitResult& result,
                          std::size_t parameter);
 
-/// One line per finished start, and back. A journal begins with the fit's fingerprint; a line that
-/// was cut short, or is not as it was written by its checksum, is ignored with those behind it.
+/// One line per finished start, and back (journal.hpp). A journal begins with the fit's
+/// fingerprint.
 std::string journal_head(const input::FitFile& file);
 std::string journal_line(const calibration::StartResult& start);
-/// Errors: BadInput if the journal belongs to another fit, or lists other numbers for the same
-/// start; IoError if it cannot be read. An absent file is an empty journal.
-std::vector<calibration::StartResult> read_journal(const std::filesystem::path& path,
-                                                   const input::FitFile& file);
+/// Errors: BadInput if the journal belongs to another fit; IoError if it cannot be read. An absent
+/// file is an empty journal.
+std::vector<calibration::StartResult> read_starts(const std::filesystem::path& path,
+                                                  const input::FitFile& file);
+/// Errors: BadInput if there are other numbers for the same start.
 void merge_into(std::vector<calibration::StartResult>& all,
                 std::vector<calibration::StartResult> more, const std::string& from);
 
