@@ -49,9 +49,42 @@ double log_sum(double a, double b) {
   return most == -infinity ? most : most + std::log(std::exp(a - most) + std::exp(b - most));
 }
 
-/// A place with its momentum.
+/// A chain's inverse mass matrix A, and its Cholesky factor: p = L⁻ᵀ n has the covariance A⁻¹.
+struct Metric {
+  MatrixXd inverse_mass, lower;
+};
+
+/// Where the warm-up takes a new metric, and begins to set its step anew.
+struct Phases {
+  explicit Phases(int warmup) : second(warmup / 4), third(warmup / 2) {}
+  /// The last iteration before the phase of an iteration.
+  int begin(int iteration) const {
+    return iteration <= second ? 0 : iteration <= third ? second : third;
+  }
+  int second, third;
+};
+
+/// The covariance of what the chain has drawn in the phase before (of the first phase, in its
+/// second half), and of the curvature at the mode, the identity, as if five draws were worth that.
+Metric metric_of(const std::vector<Draw>& draws, Index size, int begin, const Phases& phases) {
+  constexpr double worth = 5.0;
+  MatrixXd A = worth * MatrixXd::Identity(size, size);
+  const int from =
+      begin == phases.third && phases.third > phases.second ? phases.second : begin / 2;
+  VectorXd mean = VectorXd::Zero(size);
+  for (int i = from + 1; i <= begin; ++i)
+    mean += draws[static_cast<std::size_t>(i)].w / (begin - from);
+  for (int i = from + 1; i <= begin; ++i) {
+    const VectorXd off = draws[static_cast<std::size_t>(i)].w - mean;
+    A += off * off.transpose();
+  }
+  A /= worth + (begin - from);
+  return {A, A.llt().matrixL()};
+}
+
+/// A place with its momentum and its velocity A p.
 struct State {
-  VectorXd w, p, gradient;
+  VectorXd w, p, v, gradient;
   double log_density = 0.0;
 };
 
@@ -67,9 +100,11 @@ struct Tree {
 /// One draw.
 class Trajectory {
  public:
-  Trajectory(const Posterior& posterior, const Walk& walk, double step, Random random, Draw& draw)
+  Trajectory(const Posterior& posterior, const Walk& walk, const Metric& metric, double step,
+             Random random, Draw& draw)
       : posterior_(posterior),
         walk_(walk),
+        metric_(metric),
         step_(step),
         random_(std::move(random)),
         draw_(draw) {}
@@ -77,12 +112,14 @@ class Trajectory {
   State place(const VectorXd& w) const {
     Posterior::Point at;
     posterior_.evaluate(walk_.u(w), false, at);
-    return {w, {}, walk_.root.transpose() * at.gradient, at.log_density};
+    return {w, {}, {}, walk_.root.transpose() * at.gradient, at.log_density};
   }
 
   /// From a place to the next; counts into the draw.
   State next(State from) {
-    from.p = random_.normal(from.w.size());
+    from.p = metric_.lower.transpose().triangularView<Eigen::Upper>().solve(
+        random_.normal(from.w.size()));
+    from.v = metric_.inverse_mass * from.p;
     start_energy_ = energy(from);
     Tree whole{from, from, from, -start_energy_, from.p, true};
     for (int doublings = 0; whole.goes_on; ++doublings) {
@@ -103,7 +140,7 @@ class Trajectory {
   }
 
  private:
-  static double energy(const State& s) { return 0.5 * s.p.squaredNorm() - s.log_density; }
+  static double energy(const State& s) { return 0.5 * s.p.dot(s.v) - s.log_density; }
 
   /// 2^depth steps on from an end.
   Tree grown(const State& from, int depth, bool forwards) {
@@ -124,8 +161,9 @@ class Trajectory {
   Tree leapfrog(const State& from, bool forwards) {
     const double step = forwards ? step_ : -step_;
     const VectorXd half = from.p + 0.5 * step * from.gradient;
-    State to = place(from.w + step * half);
+    State to = place(from.w + step * (metric_.inverse_mass * half));
     to.p = half + 0.5 * step * to.gradient;
+    to.v = metric_.inverse_mass * to.p;
     const bool broken = to.log_density == -infinity;
     const double error = broken ? infinity : energy(to) - start_energy_;
     ++trials_;
@@ -140,24 +178,25 @@ class Trajectory {
 
   /// Adds a stretch at an end; the whole goes on as long as both ends move apart.
   static void join(Tree& tree, Tree&& more, bool forwards) {
-    const VectorXd inner = forwards ? more.left.p : more.right.p;
-    const VectorXd outer = forwards ? tree.right.p : tree.left.p;
-    const VectorXd before = tree.momentum;
+    const State first = forwards ? tree.left : tree.right,
+                outer = forwards ? tree.right : tree.left;
+    const State inner = forwards ? more.left : more.right;
+    State last = forwards ? std::move(more.right) : std::move(more.left);
+    // neither the whole, nor one half with the first of the other, has turned
+    tree.goes_on = apart(tree.momentum + more.momentum, first, last) &&
+                   apart(tree.momentum + inner.p, first, inner) &&
+                   apart(more.momentum + outer.p, outer, last);
     tree.momentum += more.momentum;
     tree.log_weight = log_sum(tree.log_weight, more.log_weight);
-    // neither the whole, nor one half with the first of the other, has turned
-    const VectorXd& first = forwards ? tree.left.p : tree.right.p;
-    const VectorXd last = forwards ? more.right.p : more.left.p;
-    tree.goes_on = apart(tree.momentum, first, last) && apart(before + inner, first, inner) &&
-                   apart(more.momentum + outer, outer, last);
-    (forwards ? tree.right : tree.left) = std::move(forwards ? more.right : more.left);
+    (forwards ? tree.right : tree.left) = std::move(last);
   }
-  static bool apart(const VectorXd& momentum, const VectorXd& first, const VectorXd& last) {
-    return momentum.dot(first) > 0.0 && momentum.dot(last) > 0.0;
+  static bool apart(const VectorXd& momentum, const State& first, const State& last) {
+    return momentum.dot(first.v) > 0.0 && momentum.dot(last.v) > 0.0;
   }
 
   const Posterior& posterior_;
   const Walk& walk_;
+  const Metric& metric_;
   double step_;
   Random random_;
   Draw& draw_;
@@ -166,14 +205,15 @@ class Trajectory {
 };
 
 /// Dual averaging (Hoffman & Gelman 2014, eq. 6 with their γ, t₀ and κ) of ln step towards the
-/// wanted acceptance.
-void adapt(const Draw& before, double first_step, double wanted, Draw& draw) {
+/// wanted acceptance; t: iterations of this phase.
+void adapt(const Draw& before, int t, double first_step, double wanted, Draw& draw) {
   constexpr double gamma = 0.05, t0 = 10.0, kappa = 0.75;
-  const double t = draw.iteration, share = 1.0 / (t + t0);
-  const double lack = (1.0 - share) * before.adaptation[2] + share * (wanted - draw.accept);
+  const double mean = t > 1 ? before.adaptation[1] : 0.0, last = t > 1 ? before.adaptation[2] : 0.0;
+  const double share = 1.0 / (t + t0);
+  const double lack = (1.0 - share) * last + share * (wanted - draw.accept);
   const double log_step = std::log(10.0 * first_step) - std::sqrt(t) / gamma * lack;
   const double weight = std::pow(t, -kappa);
-  draw.adaptation = {log_step, weight * log_step + (1.0 - weight) * before.adaptation[1], lack};
+  draw.adaptation = {log_step, weight * log_step + (1.0 - weight) * mean, lack};
 }
 
 /// The chain's own beginning: twice as far from the mode as draws are, and nearer by halves as long
@@ -230,6 +270,9 @@ std::vector<Draw> run_chains(const Posterior& posterior, const Walk& walk,
       if (after) after(draws.back());
     };
     if (draws.empty()) note(beginning(posterior, walk, first_step, seed, chain));
+    const Phases phases(options.warmup);
+    Metric metric;
+    int begin = -1;
     State here;
     while (draws.back().iteration < last && !posterior.problem().interrupted()) {
       const Draw& before = draws.back();
@@ -237,14 +280,20 @@ std::vector<Draw> run_chains(const Posterior& posterior, const Walk& walk,
       draw.chain = chain;
       draw.iteration = before.iteration + 1;
       draw.adaptation = before.adaptation;
+      if (begin != phases.begin(draw.iteration)) {
+        begin = phases.begin(draw.iteration);
+        metric = metric_of(draws, posterior.size(), begin, phases);
+      }
       const bool warming = draw.iteration <= options.warmup;
-      Trajectory trajectory(posterior, walk, std::exp(before.adaptation[warming ? 0 : 1]),
-                            Random(seed, chain, draw.iteration), draw);
+      const int t = draw.iteration - begin;
+      const double step = t == 1 ? first_step : std::exp(before.adaptation[warming ? 0 : 1]);
+      Trajectory trajectory(posterior, walk, metric, step, Random(seed, chain, draw.iteration),
+                            draw);
       if (here.w.size() == 0) here = trajectory.place(before.w);
       here = trajectory.next(std::move(here));
       draw.w = here.w;
       draw.log_density = here.log_density;
-      if (warming) adapt(before, first_step, options.accept, draw);
+      if (warming) adapt(before, t, first_step, options.accept, draw);
       note(std::move(draw));
     }
   });

@@ -359,9 +359,11 @@ Command add_fit(CLI::App& root) {
               "Take the starts, and the chains, from these result folders", "DIR...");
   return {verb.app(), options, [options, file, arguments] {
             input::InputFile given = input::InputFile::read(*file, options->sets);
-            if (arguments->posterior && !given.root().contains("posterior"))
-              given = given.with(
-                  {fmt::format("posterior.chains={}", calibration::PosteriorOptions{}.chains)});
+            if (arguments->posterior && !given.root().contains("posterior")) {
+              const std::vector<std::string> table{
+                  fmt::format("posterior.chains={}", calibration::PosteriorOptions{}.chains)};
+              given = given.with(table);
+            }
             return run_fit(given, *arguments, *options);
           }};
 }
