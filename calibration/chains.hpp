@@ -1,14 +1,13 @@
 #pragma once
 /// \file
-/// Draws from a posterior by the no-U-turn sampler (Hoffman & Gelman, J. Mach. Learn. Res. 15 (2014)
-/// 1593) with multinomial weights along the trajectory (Betancourt, arXiv:1701.02434, 2017). All
-/// chains walk in the coordinates w in which the mode's curvature is the identity:
-/// u = mode + L w, L Lᵀ = curvature⁻¹. A quarter and a half into the warm-up each chain takes the
-/// covariance of its own draws for its inverse mass matrix: a posterior need not be as wide as it is
-/// at its mode.
+/// Draws from a posterior by the no-U-turn sampler (Hoffman & Gelman, J. Mach. Learn. Res. 15
+/// (2014) 1593) with multinomial weights along the trajectory (Betancourt, arXiv:1701.02434, 2017).
+/// All chains walk in the coordinates w in which the mode's curvature is the identity: u = mode + L
+/// w, L Lᵀ = curvature⁻¹. A quarter and a half into the warm-up each chain takes the covariance of
+/// its own draws for its inverse mass matrix: a posterior need not be as wide as it is at its mode.
 ///
-/// Every draw has random numbers of its own, from the seed, its chain and its place in it, so that a
-/// chain can stop after any draw and go on later, elsewhere, with the same bits.
+/// Every draw has random numbers of its own, from the seed, its chain and its place in it, so that
+/// a chain can stop after any draw and go on later, elsewhere, with the same bits.
 
 #include <functional>
 
