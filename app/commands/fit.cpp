@@ -9,7 +9,6 @@
 #include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/result_folder.hpp"
-#include "models/instruction_set.hpp"
 #include "report/picture/fit_picture.hpp"
 #include "report/picture/posterior_picture.hpp"
 #include "report/plot/gnuplot.hpp"
@@ -47,27 +46,24 @@ class FitRun {
           {fmt::format("--starts-from {} --starts-to {}: this fit has starts 0 to {}, and "
                        "--starts-to is the first one that is left out",
                        arguments.starts_from, arguments.starts_to, file_.options.starts)});
-    if (file_.posterior) check_chains(to);
+    if (file_.posterior)
+      study::share_chains(file_, arguments.chains_from, arguments.chains_to,
+                          study::have_chains(arguments.merge, chains_name));
   }
 
   io::ExitCode run() {
     const io::FolderClaim claim(folder_);
-    std::vector<calibration::StartResult> done;
+    std::vector<std::filesystem::path> journals;
     for (const std::string& dir : arguments_.merge) {
-      const std::filesystem::path journal = std::filesystem::path(dir) / journal_name;
-      if (!std::filesystem::exists(journal))
-        throw io::IoError(journal,
+      journals.push_back(std::filesystem::path(dir) / journal_name);
+      if (!std::filesystem::exists(journals.back()))
+        throw io::IoError(journals.back(),
                           "there is no journal of starts; give result folders of `repose fit`");
-      study::merge_into(done, study::read_starts(journal, file_), journal.string());
     }
-    if (options_.resume) {
-      const std::filesystem::path own = folder_.file(journal_name);
-      study::merge_into(done, study::read_starts(own, file_), own.string());
-    }
+    if (options_.resume) journals.push_back(folder_.file(journal_name));
+    std::vector<calibration::StartResult> done = study::read_starts(journals, file_);
     // the journal first: a kill in between must not lose the starts that it holds
-    std::string journal = study::journal_head(file_);
-    for (const auto& s : done) journal += study::journal_line(s);
-    folder_.write_file(journal_name, journal);
+    folder_.write_file(journal_name, study::starts_journal(file_, done));
     folder_.remove_old_outputs();
     folder_.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n# "
                                                  "From {}\n{}",
@@ -90,7 +86,6 @@ class FitRun {
     const std::string& status = solution.status;
     const Json& report = solution.report;
     const bool interrupted = status == "interrupted";
-    if (!result_.coarse.empty()) tell_coarse_to_fine();
     if (result_.starts.empty()) {
       write_summary(status, before, {});
       fmt::print(stderr, "{}: no start came to an end\n", source_);
@@ -128,67 +123,33 @@ class FitRun {
                              .dump());
   }
 
-  /// This share of chains, which is of a fit that has all its starts.
-  void check_chains(int starts_to) {
-    calibration::PosteriorOptions& posterior = *file_.posterior;
-    const int to = arguments_.chains_to < 0 ? posterior.chains : arguments_.chains_to;
-    if (arguments_.chains_from >= to || to > posterior.chains)
-      throw input::BadInput(
-          {fmt::format("--chains-from {} --chains-to {}: this posterior has chains 0 to {}, and "
-                       "--chains-to is the first one that is left out",
-                       arguments_.chains_from, arguments_.chains_to, posterior.chains)});
-    if (arguments_.starts_from > 0 || starts_to < file_.options.starts)
-      throw input::BadInput(
-          {"the posterior is drawn around the best of all starts: share out the starts without it, "
-           "then its chains with --merge of their folders and --chains-from, --chains-to"});
-    // what is merged is all there is
-    posterior.chains_from = arguments_.chains_from;
-    posterior.chains_to = has_merged_chains() ? arguments_.chains_from : to;
-  }
-
-  bool has_merged_chains() const {
-    return std::any_of(arguments_.merge.begin(), arguments_.merge.end(), [](const auto& dir) {
-      return std::filesystem::exists(std::filesystem::path(dir) / chains_name);
-    });
-  }
-
   /// Draws the posterior around the best end. False if it was interrupted.
   bool sample() {
     const study::Usage before = study::usage();
     const study::Sampler sampler(file_, problem_, result_.best().z);
-    std::vector<calibration::Draw> done;
-    for (const std::string& dir : arguments_.merge) {
-      const std::filesystem::path chains = std::filesystem::path(dir) / chains_name;
-      study::merge_into(done, study::read_chains(chains, sampler), chains.string());
-    }
     const std::filesystem::path own = folder_.file(chains_name);
-    if (options_.resume) study::merge_into(done, study::read_chains(own, sampler), own.string());
-    std::string journal = study::chains_head(file_, sampler);
-    for (const calibration::Draw& d : done) journal += study::journal_line(d);
-    folder_.write_file(chains_name, journal);
+    std::vector<std::filesystem::path> journals;
+    for (const std::string& dir : arguments_.merge)
+      journals.push_back(std::filesystem::path(dir) / chains_name);
+    if (options_.resume) journals.push_back(own);
+    std::vector<calibration::Draw> done = study::read_chains(journals, sampler);
+    folder_.write_file(chains_name, study::chains_journal(file_, sampler, done));
     posterior_ = study::sample(file_, sampler, {std::move(done), [&](const calibration::Draw& d) {
                                                   if (!study::append(own, study::journal_line(d)))
                                                     write_error_ = own.string();
                                                 }});
-    if (!posterior_.complete) {
-      if (!options_.quiet && !options_.json)
-        fmt::print("  posterior: {} of {} chains are drawn\n", posterior_.chains,
-                   file_.posterior->chains);
-      return !problem_.interrupted();
+    if (posterior_.complete) {
+      study::write_posterior(folder_, file_, sampler, posterior_);
+      attempt("posterior_bands.svg",
+              [&] { return report::posterior_bands_picture(file_, posterior_); });
+      attempt("posterior_corner.svg",
+              [&] { return report::posterior_corner_picture(file_, posterior_); });
     }
-    folder_.write_file("posterior.json",
-                       study::posterior_report(file_, sampler, posterior_).dump(2) + "\n");
-    folder_.write_file("posterior.csv", study::draws_csv(file_, posterior_));
-    folder_.write_file("posterior_bands.csv", study::bands_csv(file_, posterior_));
-    attempt("posterior_bands.svg",
-            [&] { return report::posterior_bands_picture(file_, posterior_); });
-    attempt("posterior_corner.svg",
-            [&] { return report::posterior_corner_picture(file_, posterior_); });
-    tell_posterior(sampler, study::usage().wall_s - before.wall_s);
-    return true;
+    tell_posterior(study::usage().wall_s - before.wall_s);
+    return posterior_.complete || !problem_.interrupted();
   }
 
-  void tell_posterior(const study::Sampler& sampler, double seconds) const {
+  void tell_posterior(double seconds) const {
     if (options_.json) {
       fmt::print("{}\n", Json{{"event", "posterior"},
                               {"draws", posterior_.kept},
@@ -199,50 +160,15 @@ class FitRun {
       return;
     }
     if (options_.quiet) return;
-    fmt::print("  posterior: {} draws of {} chains in {}, {} divergent{}\n", posterior_.kept,
-               posterior_.chains, io::duration_text(seconds), posterior_.divergent,
-               posterior_.converged ? "" : "; NOT CONVERGED");
-    for (const study::QuantitySummary& s : posterior_.summary)
-      fmt::print("  {:<16} {:.5g}{}   90 %: {:.5g} to {:.5g}   R-hat {:.3f}, worth {:.0f} draws\n",
-                 s.name, s.median, s.unit.empty() || s.unit == "-" ? "" : " " + s.unit,
-                 s.interval_90[0], s.interval_90[1], s.convergence.r_hat,
-                 std::min(s.convergence.bulk_ess, s.convergence.tail_ess));
-    for (std::size_t k = 0; k < file_.targets.size(); ++k)
-      for (std::size_t c = 0; c < file_.targets[k].channels.size(); ++c)
-        fmt::print(
-            "  {}{}, {}: {:.0f} % of {} rows within the 90 % band\n", file_.targets[k].name,
-            file_.targets[k].held_out ? " (held out)" : "", file_.targets[k].channels[c].name,
-            100.0 * calibration::share_inside(sampler.posterior.problem().targets()[k].channels[c],
-                                              posterior_.bands[k], static_cast<Eigen::Index>(c)),
-            file_.targets[k].rows());
-    for (const std::string& text : posterior_.complaints) fmt::print("  posterior: {}\n", text);
-  }
-
-  void tell_coarse_to_fine() const {
-    if (options_.quiet || options_.json || result_.starts.empty()) return;
-    const calibration::StartResult& fine = result_.starts.front();
-    fmt::print("coarse: objective {:.5g} from {} starts; fine: {:.5g} after {} evaluations\n",
-               fine.global.objective, result_.coarse.size(), fine.optimum.objective,
-               fine.optimum.evaluations + fine.optimum.gradients);
+    fmt::print("  posterior in {}\n", io::duration_text(seconds));
+    for (const std::string& line : study::posterior_words(file_, posterior_))
+      fmt::print("  {}\n", line);
   }
 
   void write_summary(const std::string& status, const study::Usage& before, const Json& report) {
     if (!write_error_.empty())
       throw io::IoError(write_error_, "cannot append to the journal of starts");
-    const study::Usage after = study::usage();
-    Json s;
-    s["repose"] = version_string;
-    s["instruction_set"] = instruction_set();
-    s["kind"] = "fit";
-    s["name"] = file_.name;
-    s["status"] = status;
-    s["seed"] = file_.options.seed;
-    s["wall_s"] = after.wall_s - before.wall_s;
-    s["cpu_s"] = after.cpu_s - before.cpu_s;
-    s["peak_memory_MB"] = after.peak_memory_MB;
-    for (const char* key : {"objective", "parameters", "counts", "discrepancy"})
-      if (report.contains(key)) s[key] = report[key];
-    s["input"] = file_.resolved;
+    const Json s = study::fit_summary(file_, status, before, report);
     folder_.write_file("summary.json", s.dump(2) + "\n");
     folder_.seal();
   }
@@ -266,7 +192,6 @@ class FitRun {
   }
 
   void tell(const std::string& status, double seconds) const {
-    const auto& u = result_.uncertainty;
     if (options_.json) {
       fmt::print("{}\n", Json{{"event", "done"},
                               {"folder", folder_.path().string()},
@@ -279,28 +204,8 @@ class FitRun {
     if (options_.quiet) return;
     fmt::print("{}: {}, objective {:.6g} from {} starts in {}\n", folder_.path().string(), status,
                result_.best().objective, result_.starts.size(), io::duration_text(seconds));
-    for (std::size_t i = 0; i < file_.free.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      const std::string unit = file_.free[i].unit == "-" ? "" : " " + file_.free[i].unit;
-      fmt::print("  {:<16} {:.6g}{}   95 % ({}): {}\n", file_.free[i].name, u.values[k], unit,
-                 result_.quoted[i].kind, study::quoted_words(file_, result_, i));
-    }
-    if (!result_.converged)
-      fmt::print(
-          "  not converged: the limit of evaluations (solver.{} = {}) ended every start of "
-          "the best optimum; values and intervals are provisional\n",
-          file_.coarse.empty() ? "local_evaluations" : "fine_evaluations",
-          file_.coarse.empty() ? file_.options.local_evaluations : file_.fine_evaluations);
-    if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
-      fmt::print("  worst determined: {}\n", u.combinations.front().words);
-    for (const std::string& text : study::discrepancies(file_, problem_, result_))
-      fmt::print("  does not follow: {}\n", text);
-    if (result_.clusters.size() > 1) {
-      const auto& c = result_.clusters;
-      fmt::print("  {} distinct optima; the best from {} of {} starts{}\n", c.size(),
-                 c.front().starts.size(), result_.starts.size(),
-                 c[1].same_prediction ? ", another fits as well" : "");
-    }
+    for (const std::string& line : study::fit_words(file_, problem_, result_))
+      fmt::print("  {}\n", line);
   }
 
   FitArguments arguments_;

@@ -128,6 +128,39 @@ std::vector<std::string> discrepancies(const input::FitFile& file,
   return texts;
 }
 
+std::vector<std::string> fit_words(const input::FitFile& file, const calibration::Problem& problem,
+                                   const FitResult& result) {
+  std::vector<std::string> lines;
+  const auto& u = result.uncertainty;
+  if (!result.coarse.empty()) {
+    const StartResult& fine = result.starts.front();
+    lines.push_back(
+        fmt::format("coarse: objective {:.5g} from {} starts; fine: {:.5g} after {} evaluations",
+                    fine.global.objective, result.coarse.size(), fine.optimum.objective,
+                    fine.optimum.evaluations + fine.optimum.gradients));
+  }
+  for (std::size_t i = 0; i < file.free.size(); ++i)
+    lines.push_back(fmt::format("{:<16} {:.6g}{}   95 % ({}): {}", file.free[i].name,
+                                u.values[static_cast<Index>(i)],
+                                file.free[i].unit == "-" ? "" : " " + file.free[i].unit,
+                                result.quoted[i].kind, quoted_words(file, result, i)));
+  if (!result.converged)
+    lines.push_back(
+        fmt::format("not converged: the limit of evaluations (solver.{} = {}) ended every start of "
+                    "the best optimum; values and intervals are provisional",
+                    file.coarse.empty() ? "local_evaluations" : "fine_evaluations",
+                    file.coarse.empty() ? file.options.local_evaluations : file.fine_evaluations));
+  if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
+    lines.push_back("worst determined: " + u.combinations.front().words);
+  for (const std::string& text : discrepancies(file, problem, result))
+    lines.push_back("does not follow: " + text);
+  if (const auto& c = result.clusters; c.size() > 1)
+    lines.push_back(fmt::format("{} distinct optima; the best from {} of {} starts{}", c.size(),
+                                c.front().starts.size(), result.starts.size(),
+                                c[1].same_prediction ? ", another fits as well" : ""));
+  return lines;
+}
+
 Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
                 const FitResult& result, const std::string& status) {
   const auto& u = result.uncertainty;
@@ -338,8 +371,29 @@ std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
   return text;
 }
 
-std::string journal_head(const input::FitFile& file) {
-  return Json{{"fit", file.name}, {"fingerprint", file.fingerprint}}.dump() + "\n";
+Json fit_summary(const input::FitFile& file, const std::string& status, const Usage& before,
+                 const Json& report) {
+  const Usage after = usage();
+  Json s;
+  s["repose"] = version_string;
+  s["instruction_set"] = instruction_set();
+  s["kind"] = "fit";
+  s["name"] = file.name;
+  s["status"] = status;
+  s["seed"] = file.options.seed;
+  s["wall_s"] = after.wall_s - before.wall_s;
+  s["cpu_s"] = after.cpu_s - before.cpu_s;
+  s["peak_memory_MB"] = after.peak_memory_MB;
+  for (const char* key : {"objective", "parameters", "counts", "discrepancy"})
+    if (report.contains(key)) s[key] = report[key];
+  s["input"] = file.resolved;
+  return s;
+}
+
+std::string starts_journal(const input::FitFile& file, const std::vector<StartResult>& starts) {
+  std::string text = Json{{"fit", file.name}, {"fingerprint", file.fingerprint}}.dump() + "\n";
+  for (const StartResult& s : starts) text += journal_line(s);
+  return text;
 }
 
 std::string journal_line(const StartResult& start) {
@@ -351,8 +405,9 @@ std::string journal_line(const StartResult& start) {
   return journal_line(j);
 }
 
-std::vector<StartResult> read_starts(const std::filesystem::path& path,
-                                     const input::FitFile& file) {
+namespace {
+
+std::vector<StartResult> read_one(const std::filesystem::path& path, const input::FitFile& file) {
   std::vector<StartResult> starts;
   read_journal(path, "start", file.fingerprint, [&](const Json& j) {
     StartResult s;
@@ -381,6 +436,16 @@ void merge_into(std::vector<StartResult>& all, std::vector<StartResult> more,
   }
   std::sort(all.begin(), all.end(),
             [](const StartResult& a, const StartResult& b) { return a.index < b.index; });
+}
+
+}  // namespace
+
+std::vector<StartResult> read_starts(const std::vector<std::filesystem::path>& journals,
+                                     const input::FitFile& file) {
+  std::vector<StartResult> all;
+  for (const std::filesystem::path& path : journals)
+    merge_into(all, read_one(path, file), path.string());
+  return all;
 }
 
 }  // namespace repose::study

@@ -106,8 +106,47 @@ std::string bands_csv(const input::FitFile& file, const PosteriorResult& result)
   return text;
 }
 
-std::string chains_head(const input::FitFile& file, const Sampler& sampler) {
-  return Json{{"posterior", file.name}, {"fingerprint", sampler.fingerprint}}.dump() + "\n";
+void write_posterior(const io::ResultFolder& folder, const input::FitFile& file,
+                     const Sampler& sampler, const PosteriorResult& result) {
+  folder.write_file("posterior.json", posterior_report(file, sampler, result).dump(2) + "\n");
+  folder.write_file("posterior.csv", draws_csv(file, result));
+  folder.write_file("posterior_bands.csv", bands_csv(file, result));
+}
+
+std::vector<std::string> posterior_words(const input::FitFile& file,
+                                         const PosteriorResult& result) {
+  std::vector<std::string> lines;
+  if (!result.complete)
+    return {
+        fmt::format("posterior: {} of {} chains are drawn", result.chains, file.posterior->chains)};
+  lines.push_back(fmt::format("posterior: {} draws of {} chains, {} divergent{}", result.kept,
+                              result.chains, result.divergent,
+                              result.converged ? "" : "; not converged"));
+  for (const QuantitySummary& s : result.summary)
+    lines.push_back(
+        fmt::format("{:<16} {:.5g}{}   90 %: {:.5g} to {:.5g}   R-hat {:.3f}, worth {:.0f} draws",
+                    s.name, s.median, s.unit.empty() || s.unit == "-" ? "" : " " + s.unit,
+                    s.interval_90[0], s.interval_90[1], s.convergence.r_hat,
+                    std::min(s.convergence.bulk_ess, s.convergence.tail_ess)));
+  for (std::size_t k = 0; k < file.targets.size(); ++k)
+    for (std::size_t c = 0; c < file.targets[k].channels.size(); ++c) {
+      const calibration::Target& t = file.targets[k];
+      const double share =
+          calibration::share_inside(t.channels[c], result.bands[k], static_cast<Index>(c));
+      lines.push_back(fmt::format("{}{}, {}: {:.0f} % of {} rows within the 90 % band", t.name,
+                                  t.held_out ? " (held out)" : "", t.channels[c].name,
+                                  100.0 * share, t.rows()));
+    }
+  for (const std::string& text : result.complaints) lines.push_back("posterior: " + text);
+  return lines;
+}
+
+std::string chains_journal(const input::FitFile& file, const Sampler& sampler,
+                           const std::vector<Draw>& draws) {
+  std::string text =
+      Json{{"posterior", file.name}, {"fingerprint", sampler.fingerprint}}.dump() + "\n";
+  for (const Draw& d : draws) text += journal_line(d);
+  return text;
 }
 
 std::string journal_line(const Draw& d) {
@@ -125,7 +164,9 @@ std::string journal_line(const Draw& d) {
   return journal_line(j);
 }
 
-std::vector<Draw> read_chains(const std::filesystem::path& path, const Sampler& sampler) {
+namespace {
+
+std::vector<Draw> read_one(const std::filesystem::path& path, const Sampler& sampler) {
   std::vector<Draw> draws;
   read_journal(path, "draw", sampler.fingerprint, [&](const Json& j) {
     Draw d;
@@ -144,6 +185,7 @@ std::vector<Draw> read_chains(const std::filesystem::path& path, const Sampler& 
   return draws;
 }
 
+/// Adds draws that are not there yet.
 void merge_into(std::vector<Draw>& all, std::vector<Draw> more, const std::string& from) {
   const auto before = [](const Draw& a, const Draw& b) {
     return std::pair(a.chain, a.iteration) < std::pair(b.chain, b.iteration);
@@ -165,6 +207,39 @@ void merge_into(std::vector<Draw>& all, std::vector<Draw> more, const std::strin
                              : d.iteration == all.back().iteration + 1;
     if (!same && follows) all.push_back(std::move(d));
   }
+}
+
+}  // namespace
+
+std::vector<Draw> read_chains(const std::vector<std::filesystem::path>& journals,
+                              const Sampler& sampler) {
+  std::vector<Draw> all;
+  for (const std::filesystem::path& path : journals)
+    merge_into(all, read_one(path, sampler), path.string());
+  return all;
+}
+
+bool have_chains(const std::vector<std::string>& folders, std::string_view journal) {
+  return std::any_of(folders.begin(), folders.end(), [&](const std::string& folder) {
+    return std::filesystem::exists(std::filesystem::path(folder) / journal);
+  });
+}
+
+void share_chains(input::FitFile& file, int from, int to, bool merged) {
+  calibration::PosteriorOptions& posterior = *file.posterior;
+  const int end = to < 0 ? posterior.chains : to;
+  if (from >= end || end > posterior.chains)
+    throw input::BadInput(
+        {fmt::format("--chains-from {} --chains-to {}: this posterior has chains 0 to {}, and "
+                     "--chains-to is the first one that is left out",
+                     from, end, posterior.chains)});
+  const calibration::FitOptions& starts = file.options;
+  if (starts.starts_from > 0 || (starts.starts_to >= 0 && starts.starts_to < starts.starts))
+    throw input::BadInput(
+        {"the posterior is drawn around the best of all starts: share out the starts without it, "
+         "then its chains with --merge of their folders and --chains-from, --chains-to"});
+  posterior.chains_from = from;
+  posterior.chains_to = merged ? from : end;
 }
 
 }  // namespace repose::study
