@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -58,6 +59,38 @@ VectorXd damped_step(const MatrixXd& J, const VectorXd& r, const VectorXd& scale
     free = std::move(inside);
   }
   return step;
+}
+
+/// The last digits. Near the optimum the objective is flat: round-off hides from it what the
+/// gradient still shows, so these steps are judged by their own length, which must shrink.
+/// Directions of next to no influence keep their place by a little damping; where the first step is
+/// not small already, some direction is not determined, and nothing is done.
+void finish(const Problem& problem, const OptimiseOptions& options, const VectorXd& scale,
+            Evaluation& here, Optimum& best) {
+  constexpr double damping = 1e-12, first_step = 1e-4, round_off = 1e-10;
+  double before = first_step;
+  Evaluation there;
+  while (best.evaluations + best.gradients < options.max_evaluations && !problem.interrupted()) {
+    const VectorXd g = here.J.transpose() * here.r;
+    const VectorXd D = scale.cwiseMax(here.J.colwise().norm().transpose());
+    const VectorXd z =
+        clipped(best.z + damped_step(here.J, here.r, D.cwiseMax(1e-8 * D.maxCoeff()),
+                                     movable(best.z, g, options.fixed), damping, best.z));
+    const double moved = (z - best.z).cwiseAbs().maxCoeff();
+    if (!(moved < 0.7 * before) || moved < 1e-15) return;
+    problem.evaluate(z, true, there);
+    ++best.gradients;
+    if (there.failed || !(there.objective() <= best.objective * (1.0 + round_off))) return;
+    std::swap(here, there);
+    best.z = z;
+    best.objective = here.objective();
+    before = moved;
+  }
+}
+
+bool has_derivatives(const Problem& problem) {
+  return std::all_of(problem.targets().begin(), problem.targets().end(),
+                     [](const Target& t) { return t.held_out || t.simulator->has_derivatives(); });
 }
 
 }  // namespace
@@ -143,6 +176,8 @@ Optimum levenberg_marquardt(const Problem& problem, const VectorXd& start,
       }
     }
   }
+  if ((best.why == "converged" || best.why == "round-off") && has_derivatives(problem))
+    finish(problem, options, scale, here, best);
   best.seconds = seconds_since(begin);
   note();
   return best;

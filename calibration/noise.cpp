@@ -157,7 +157,10 @@ MatrixXd Noise::variance(const MatrixXd& A) const {
 
 MatrixXd Noise::white_variance(const MatrixXd& A) const {
   Noise white = *this;
-  for (ChannelNoise& c : white.channels) c.rho = 0.0;
+  for (ChannelNoise& c : white.channels) {
+    c.rho = 0.0;
+    c.sd = c.white_sd;
+  }
   white.between.setIdentity();
   return white.variance(A);
 }
@@ -236,6 +239,7 @@ Noise estimate_noise(const Problem& problem, const VectorXd& r, const MatrixXd& 
       c.declared = !c.beyond;
       if (c.declared) c.sd = b.factor;
     }
+    c.white_sd = c.sd;
     noise.channels.push_back(c);
   }
   // Correlations first all together, then without those that are no more than chance: one standard

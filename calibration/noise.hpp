@@ -16,6 +16,7 @@ namespace repose::calibration {
 struct ChannelNoise {
   Block block;
   double sd = 0.0;        ///< σ in units of r
+  double white_sd = 0.0;  ///< the same if neighbours and channels had nothing in common
   double rho = 0.0;       ///< 0 where no more than chance: ρ ≤ 1/√freedom
   bool declared = false;  ///< σ is that of the user and the misfit keeps to it
   bool beyond = false;    ///< σ was declared and the misfit is more than that (1 %)
@@ -32,7 +33,7 @@ struct Noise {
   Eigen::MatrixXd filtered(const Eigen::MatrixXd& A) const;
   /// Aᵀ Ω A.
   Eigen::MatrixXd variance(const Eigen::MatrixXd& A) const;
-  /// The same for white noise of the same size.
+  /// The same if all errors were white.
   Eigen::MatrixXd white_variance(const Eigen::MatrixXd& A) const;
   /// The degrees of freedom with which aᵀ Ω a is known: mixed_freedom() of the scatter of the
   /// estimated σ (2/Var ln aᵀΩa, Satterthwaite 1946) and of ρ and h; infinite where all is declared

@@ -202,6 +202,53 @@ void ParameterSpace::priors(const VectorXd& z, Eigen::Ref<VectorXd> r,
   }
 }
 
+double ParameterSpace::log_prior(const VectorXd& z, VectorXd& gradient) const {
+  gradient = VectorXd::Zero(at(size()));
+  const auto n = at(prior_count());
+  if (n == 0) return 0.0;
+  const VectorXd v = values(z);
+  const Eigen::MatrixXd d = slopes(z);
+  VectorXd r(n);
+  Eigen::MatrixXd J(n, at(size()));
+  Eigen::Ref<Eigen::MatrixXd> by_z = J;
+  priors(z, r, &by_z);
+  gradient = -J.transpose() * r;
+  double sum = -0.5 * r.squaredNorm();
+  for (std::size_t i = 0; i < size(); ++i) {
+    const FreeParameter& p = parameters_[i];
+    if (!p.prior) continue;
+    // ln |∂value/∂z| and where it comes from: the scale, the partner's bound, the ratio
+    const auto [low, high] = bounds(i, v);
+    const Coordinate c = coordinate(i, z[at(i)], v);
+    sum += std::log(c.slope);
+    const bool log = p.scale == Scale::log;
+    const double ratio = log ? std::log(high / low) : 0.0;
+    gradient[at(i)] += ratio;
+    if (p.below >= 0 && high < room_[i][1]) {
+      const double by_high = log ? (z[at(i)] + 1.0 / ratio) / high : 1.0 / (high - low);
+      gradient += by_high * below_share * d.row(p.below).transpose();
+    }
+    if (p.of >= 0) {
+      sum += std::log(std::abs(v[p.of]));
+      gradient += d.row(p.of).transpose() / v[p.of];
+    }
+    if (p.prior->relative) {  // ∂ ln value/∂z
+      sum -= std::log(std::abs(v[at(i)]));
+      gradient -= d.row(at(i)).transpose() / v[at(i)];
+    }
+  }
+  return sum;
+}
+
+Eigen::MatrixXd ParameterSpace::prior_curvature(const VectorXd& z) const {
+  const auto n = at(prior_count());
+  VectorXd r(n);
+  Eigen::MatrixXd J(n, at(size()));
+  Eigen::Ref<Eigen::MatrixXd> by_z = J;
+  if (n > 0) priors(z, r, &by_z);
+  return J.transpose() * J;
+}
+
 VectorXd clipped(const VectorXd& z) { return z.cwiseMax(0.0).cwiseMin(1.0); }
 
 }  // namespace repose::calibration

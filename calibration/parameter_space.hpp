@@ -54,6 +54,12 @@ class ParameterSpace {
   /// Residuals of the priors and, if J is given (prior_count × n), their derivatives to z.
   void priors(const Eigen::VectorXd& z, Eigen::Ref<Eigen::VectorXd> r,
               Eigen::Ref<Eigen::MatrixXd>* J) const;
+  /// ln of the prior density of z, without its constant: even in z where a parameter has no prior,
+  /// and with one that distribution of its value (given those of earlier parameters), cut off at
+  /// the bounds: ln p = −½ r² + ln |∂value/∂z|. gradient: n.
+  double log_prior(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) const;
+  /// Gauss-Newton's −∂² ln p/∂z² of it (n × n).
+  Eigen::MatrixXd prior_curvature(const Eigen::VectorXd& z) const;
 
  private:
   /// The coordinate x of one parameter given the values of earlier ones, its slope, and the slope

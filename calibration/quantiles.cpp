@@ -42,6 +42,13 @@ double bisect(F&& f, double low, double high) {
 
 }  // namespace
 
+double normal_quantile(double probability) {
+  const double tail = std::min(probability, 1.0 - probability);
+  const double x =
+      bisect([&](double y) { return tail - 0.5 * std::erfc(y / std::sqrt(2.0)); }, 0.0, 40.0);
+  return probability < 0.5 ? -x : x;
+}
+
 double t_probability(double t, double freedom) {
   if (!(freedom < 1e7)) return 0.5 * std::erfc(-t / std::sqrt(2.0));
   const double tail = 0.5 * incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));

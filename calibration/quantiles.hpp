@@ -1,8 +1,12 @@
 #pragma once
 /// \file
-/// Student's t for any degrees of freedom, and how far a likelihood may fall beside a bound.
+/// Quantiles of the normal distribution and of Student's t for any degrees of freedom, and how far
+/// a likelihood may fall beside a bound.
 
 namespace repose::calibration {
+
+/// The x of P(X ≤ x) = probability, 0 < probability < 1, of the standard normal distribution.
+double normal_quantile(double probability);
 
 /// P(T ≤ t); an infinite freedom is the normal distribution.
 double t_probability(double t, double freedom);

@@ -16,6 +16,7 @@ namespace repose::input {
 namespace {
 
 constexpr std::array<std::string_view, 2> scale_words{"linear", "log"};
+constexpr std::array<std::string_view, 2> noise_words{"estimated", "declared"};
 constexpr std::array<std::string_view, 3> compare_words{"rows", "interpolate", "distance"};
 static_assert(static_cast<int>(calibration::Compare::distance) == 2);
 static_assert(static_cast<int>(Scale::log) == 1);
@@ -158,6 +159,28 @@ void uncertainty_keys(Keys& keys, FitFile& fit) {
   keys.integer({"bootstrap", "-", "refits of resampled data"}, {0, 100000}, fit.bootstrap);
 }
 
+void posterior_keys(Keys& keys, calibration::PosteriorOptions& posterior) {
+  keys.integer({"chains", "-", "Markov chains, each from a beginning of its own"}, {1, 1000},
+               posterior.chains);
+  keys.integer({"warmup", "-", "draws per chain that set its step and are thrown away"},
+               {20, 1000000}, posterior.warmup);
+  keys.integer({"draws", "-", "draws per chain that are kept"}, {100, 1000000}, posterior.draws);
+  keys.number({"discrepancy", "-",
+               "expected size of the law's own error, which hangs together along a curve, as a "
+               "share of each channel's range; 0: the law is right",
+               Range{0.0, 10.0, false, false}},
+              posterior.discrepancy);
+  std::size_t noise = posterior.keep_declared_noise ? 1 : 0;
+  keys.word({"noise", "-",
+             "of each channel: estimated with the parameters, what is declared being right within "
+             "a factor 2, or as it is declared"},
+            noise_words, noise);
+  posterior.keep_declared_noise = noise == 1;
+  keys.number({"accept", "-", "mean acceptance that the step is set to; more: shorter steps",
+               Range{0.5, 0.999, false, false}},
+              posterior.accept);
+}
+
 std::vector<KeyInfo> fit_infos() {
   LawSpec law;
   FitFile fit = default_fit();
@@ -183,6 +206,11 @@ std::vector<KeyInfo> fit_infos() {
                [&](Keys& below) { solver_keys(below, fit); });
     keys.table({"uncertainty", "-", "how sure the result is"},
                [&](Keys& below) { uncertainty_keys(below, fit); });
+    keys.table({"posterior", "-", "draws from the posterior; without the table: none"},
+               [&](Keys& below) {
+                 calibration::PosteriorOptions posterior;
+                 posterior_keys(below, posterior);
+               });
     keys.value({"chart", "-", "of `repose chart fit`: evaluations and seed"}, nothing, no_text,
                open_table());
   });

@@ -48,5 +48,6 @@ void noise_part_keys(Keys& keys, NoiseParts& parts);
 
 void solver_keys(Keys& keys, FitFile& fit);
 void uncertainty_keys(Keys& keys, FitFile& fit);
+void posterior_keys(Keys& keys, calibration::PosteriorOptions& posterior);
 
 }  // namespace repose::input

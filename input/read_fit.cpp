@@ -28,9 +28,12 @@ void read_tables(InputFile& file, std::uint64_t seed, const std::filesystem::pat
   read_solver(root.table("solver"), seed, out);
   read_uncertainty(root.table("uncertainty"), out);
   std::vector<TomlReader> targets = root.tables("target", "an experiment");
+  const bool posterior = root.has("posterior");
+  TomlReader posterior_table = root.table("posterior");
   if (!file.ok()) {
     // what depends on a sound law cannot be checked yet
     fit.expect_any();
+    posterior_table.expect_any();
     for (TomlReader& t : targets) t.expect_any();
     file.throw_if_bad();
   }
@@ -42,6 +45,7 @@ void read_tables(InputFile& file, std::uint64_t seed, const std::filesystem::pat
                       cache);
   for (TomlReader& t : targets) reader.read(t);
   file.throw_if_bad();
+  if (posterior) read_posterior(std::move(posterior_table), out);
   if (!reader.has_coarse()) out.coarse.clear();
   parameters.link_ratios();
   file.throw_if_bad();
@@ -143,10 +147,14 @@ FitFile read_fit(const InputFile& given, std::uint64_t seed, const std::filesyst
             t->insert_or_assign(
                 key,
                 std::filesystem::absolute(file.parent_path() / *name).lexically_normal().string());
-  std::ostringstream text;
-  text << resolved << "\n";
-  out.resolved = std::move(text).str();
-  std::string key = out.resolved + out.fingerprint +
+  const auto text_of = [](const toml::table& table) {
+    std::ostringstream text;
+    text << table << "\n";
+    return std::move(text).str();
+  };
+  out.resolved = text_of(resolved);
+  resolved.erase("posterior");  // says nothing of a start
+  std::string key = text_of(resolved) + out.fingerprint +
                     fmt::format("seed {} {}", out.options.seed, program_identity());
   for (const calibration::Target& t : out.targets)
     for (const auto& channel : t.channels)

@@ -1,10 +1,12 @@
 #pragma once
 /// \file
-/// A fit file: [law], [fit], [[target]], [solver], [uncertainty] (docs/interface.md, Fit).
+/// A fit file: [law], [fit], [[target]], [solver], [uncertainty], [posterior] (docs/interface.md,
+/// Fit).
 
 #include <filesystem>
 
 #include "calibration/multistart.hpp"
+#include "calibration/posterior.hpp"
 #include "input/collapse_simulator.hpp"
 #include "input/input_file.hpp"
 #include "input/key_info.hpp"
@@ -39,6 +41,7 @@ struct FitFile {
   /// Standard deviation of the fine scenes' discretisation error over the change from coarse to
   /// fine at the coarse optimum.
   double resolution_error = 1.0;
+  std::optional<calibration::PosteriorOptions> posterior;  ///< absent: none is asked for
   std::shared_ptr<CollapseCount> runs = std::make_shared<CollapseCount>();
   std::string resolved;             ///< the input as TOML, --set included, tables by absolute path
   std::string fingerprint;          ///< of everything that the result of a start depends on

@@ -59,4 +59,16 @@ void read_uncertainty(TomlReader table, FitFile& out) {
   uncertainty_keys(keys, out);
 }
 
+void read_posterior(TomlReader table, FitFile& out) {
+  out.posterior.emplace();
+  ReadKeys keys(table);
+  posterior_keys(keys, *out.posterior);
+  if (!out.posterior->keep_declared_noise) return;
+  for (const calibration::Target& t : out.targets)
+    for (const calibration::Channel& c : t.channels)
+      if (!t.held_out && !c.noise)
+        table.report("noise", fmt::format("{} = \"declared\", but {} declares no noise of {}",
+                                          table.path_of("noise"), t.name, c.name));
+}
+
 }  // namespace repose::input

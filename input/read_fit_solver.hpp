@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The [solver] and [uncertainty] tables of a fit.
+/// The [solver], [uncertainty] and [posterior] tables of a fit.
 
 #include <cstdint>
 
@@ -13,5 +13,8 @@ namespace repose::input {
 void read_solver(TomlReader solver, std::uint64_t seed, FitFile& out);
 
 void read_uncertainty(TomlReader table, FitFile& out);
+
+/// A table that is there, once the targets are read: noise = "declared" needs theirs.
+void read_posterior(TomlReader table, FitFile& out);
 
 }  // namespace repose::input

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 79> outputs{"manifest.json",
+constexpr std::array<std::string_view, 84> outputs{"manifest.json",
                                                    "largest_depth.asc",
                                                    "largest_depth.prj",
                                                    "largest_depth.tif",
@@ -107,6 +107,11 @@ constexpr std::array<std::string_view, 79> outputs{"manifest.json",
                                                    "estimate.csv",
                                                    "advised.toml",
                                                    "fit_diagnostics.svg",
+                                                   "posterior.json",
+                                                   "posterior.csv",
+                                                   "posterior_bands.csv",
+                                                   "posterior_bands.svg",
+                                                   "posterior_corner.svg",
                                                    "validation.md",
                                                    "result.csv",
                                                    "result.svg"};
@@ -215,7 +220,8 @@ void ResultFolder::remove_old_outputs() const {
 
 void ResultFolder::remove_old_parts() const {
   io::remove_old_parts(folder_, [](std::string_view name) {
-    return name == "input.toml" || name == "starts.jsonl" || name == "report.html" ||
+    return name == "input.toml" || name == "starts.jsonl" || name == "chains.jsonl" ||
+           name == "report.html" ||
            std::find(outputs.begin(), outputs.end(), name) != outputs.end();
   });
   io::remove_old_parts(frames(),

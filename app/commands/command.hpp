@@ -102,6 +102,9 @@ struct FitArguments {
   int starts_to = -1;
   std::vector<std::string> merge;
   bool strict = false;
+  bool posterior = false;  ///< also where the file has no [posterior]
+  int chains_from = 0;
+  int chains_to = -1;
 };
 io::ExitCode run_fit(const input::InputFile& given, const FitArguments& arguments,
                      const CommonOptions& options);

@@ -9,10 +9,12 @@
 #include "io/json.hpp"
 #include "io/progress.hpp"
 #include "io/result_folder.hpp"
-#include "models/instruction_set.hpp"
 #include "report/picture/fit_picture.hpp"
+#include "report/picture/posterior_picture.hpp"
 #include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
+#include "study/fit/journal.hpp"
+#include "study/fit/posterior_record.hpp"
 #include "study/fit/search.hpp"
 #include "study/run/run_record.hpp"
 
@@ -22,6 +24,7 @@ namespace {
 using Json = io::Json;
 
 constexpr std::string_view journal_name = "starts.jsonl";
+constexpr std::string_view chains_name = "chains.jsonl";
 
 class FitRun {
  public:
@@ -43,26 +46,24 @@ class FitRun {
           {fmt::format("--starts-from {} --starts-to {}: this fit has starts 0 to {}, and "
                        "--starts-to is the first one that is left out",
                        arguments.starts_from, arguments.starts_to, file_.options.starts)});
+    if (file_.posterior)
+      study::share_chains(file_, arguments.chains_from, arguments.chains_to,
+                          study::have_chains(arguments.merge, chains_name));
   }
 
   io::ExitCode run() {
     const io::FolderClaim claim(folder_);
-    std::vector<calibration::StartResult> done;
+    std::vector<std::filesystem::path> journals;
     for (const std::string& dir : arguments_.merge) {
-      const std::filesystem::path journal = std::filesystem::path(dir) / journal_name;
-      if (!std::filesystem::exists(journal))
-        throw io::IoError(journal,
+      journals.push_back(std::filesystem::path(dir) / journal_name);
+      if (!std::filesystem::exists(journals.back()))
+        throw io::IoError(journals.back(),
                           "there is no journal of starts; give result folders of `repose fit`");
-      study::merge_into(done, study::read_journal(journal, file_), journal.string());
     }
-    if (options_.resume) {
-      const std::filesystem::path own = folder_.file(journal_name);
-      study::merge_into(done, study::read_journal(own, file_), own.string());
-    }
+    if (options_.resume) journals.push_back(folder_.file(journal_name));
+    std::vector<calibration::StartResult> done = study::read_starts(journals, file_);
     // the journal first: a kill in between must not lose the starts that it holds
-    std::string journal = study::journal_head(file_);
-    for (const auto& s : done) journal += study::journal_line(s);
-    folder_.write_file(journal_name, journal);
+    folder_.write_file(journal_name, study::starts_journal(file_, done));
     folder_.remove_old_outputs();
     folder_.write_file("input.toml", fmt::format("# The input of this result, by repose {}.\n# "
                                                  "From {}\n{}",
@@ -85,7 +86,6 @@ class FitRun {
     const std::string& status = solution.status;
     const Json& report = solution.report;
     const bool interrupted = status == "interrupted";
-    if (!result_.coarse.empty()) tell_coarse_to_fine();
     if (result_.starts.empty()) {
       write_summary(status, before, {});
       fmt::print(stderr, "{}: no start came to an end\n", source_);
@@ -97,23 +97,24 @@ class FitRun {
     folder_.write_file("fitted.toml", study::fitted_toml(file_, result_));
     folder_.write_file("predictions.csv", study::predictions_csv(file_, problem_, result_));
     draw();
-    write_summary(status, before, report);
     tell(status, study::usage().wall_s - before.wall_s);
-    if (interrupted) return io::ExitCode::interrupted;
-    const bool short_of = arguments_.strict && !result_.converged;
+    bool sampled = true;
+    if (file_.posterior && !interrupted && !result_.best().failed) {
+      problem_.interrupt_by([&] { return interrupt.requested(); });
+      sampled = sample();
+    }
+    write_summary(sampled ? status : "interrupted", before, report);
+    if (interrupted || !sampled) return io::ExitCode::interrupted;
+    const bool converged = result_.converged && posterior_.converged;
+    const bool short_of = arguments_.strict && !converged;
     return result_.best().failed || short_of ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
  private:
   /// Called under run_starts' lock: appends the start, whole, so that a kill loses none before it.
   void after(const calibration::StartResult& s) {
-    std::filesystem::path path = folder_.file(journal_name);
-    FILE* out = std::fopen(path.c_str(), "ab");
-    const std::string line = study::journal_line(s);
-    const bool good =
-        out != nullptr && std::fwrite(line.data(), 1, line.size(), out) == line.size();
-    if (out != nullptr && (std::fclose(out) != 0 || !good)) out = nullptr;
-    if (out == nullptr) write_error_ = path.string();
+    const std::filesystem::path path = folder_.file(journal_name);
+    if (!study::append(path, study::journal_line(s))) write_error_ = path.string();
     if (options_.json)
       fmt::print("{}\n", Json{{"event", "start"},
                               {"start", s.index},
@@ -122,53 +123,75 @@ class FitRun {
                              .dump());
   }
 
-  void tell_coarse_to_fine() const {
-    if (options_.quiet || options_.json || result_.starts.empty()) return;
-    const calibration::StartResult& fine = result_.starts.front();
-    fmt::print("coarse: objective {:.5g} from {} starts; fine: {:.5g} after {} evaluations\n",
-               fine.global.objective, result_.coarse.size(), fine.optimum.objective,
-               fine.optimum.evaluations + fine.optimum.gradients);
+  /// Draws the posterior around the best end. False if it was interrupted.
+  bool sample() {
+    const study::Usage before = study::usage();
+    const study::Sampler sampler(file_, problem_, result_.best().z);
+    const std::filesystem::path own = folder_.file(chains_name);
+    std::vector<std::filesystem::path> journals;
+    for (const std::string& dir : arguments_.merge)
+      journals.push_back(std::filesystem::path(dir) / chains_name);
+    if (options_.resume) journals.push_back(own);
+    std::vector<calibration::Draw> done = study::read_chains(journals, sampler);
+    folder_.write_file(chains_name, study::chains_journal(file_, sampler, done));
+    posterior_ = study::sample(file_, sampler, {std::move(done), [&](const calibration::Draw& d) {
+                                                  if (!study::append(own, study::journal_line(d)))
+                                                    write_error_ = own.string();
+                                                }});
+    if (posterior_.complete) {
+      study::write_posterior(folder_, file_, sampler, posterior_);
+      attempt("posterior_bands.svg",
+              [&] { return report::posterior_bands_picture(file_, posterior_); });
+      attempt("posterior_corner.svg",
+              [&] { return report::posterior_corner_picture(file_, posterior_); });
+    }
+    tell_posterior(study::usage().wall_s - before.wall_s);
+    return posterior_.complete || !problem_.interrupted();
+  }
+
+  void tell_posterior(double seconds) const {
+    if (options_.json) {
+      fmt::print("{}\n", Json{{"event", "posterior"},
+                              {"draws", posterior_.kept},
+                              {"divergent", posterior_.divergent},
+                              {"converged", posterior_.converged},
+                              {"wall_s", seconds}}
+                             .dump());
+      return;
+    }
+    if (options_.quiet) return;
+    fmt::print("  posterior in {}\n", io::duration_text(seconds));
+    for (const std::string& line : study::posterior_words(file_, posterior_))
+      fmt::print("  {}\n", line);
   }
 
   void write_summary(const std::string& status, const study::Usage& before, const Json& report) {
     if (!write_error_.empty())
       throw io::IoError(write_error_, "cannot append to the journal of starts");
-    const study::Usage after = study::usage();
-    Json s;
-    s["repose"] = version_string;
-    s["instruction_set"] = instruction_set();
-    s["kind"] = "fit";
-    s["name"] = file_.name;
-    s["status"] = status;
-    s["seed"] = file_.options.seed;
-    s["wall_s"] = after.wall_s - before.wall_s;
-    s["cpu_s"] = after.cpu_s - before.cpu_s;
-    s["peak_memory_MB"] = after.peak_memory_MB;
-    for (const char* key : {"objective", "parameters", "counts", "discrepancy"})
-      if (report.contains(key)) s[key] = report[key];
-    s["input"] = file_.resolved;
+    const Json s = study::fit_summary(file_, status, before, report);
     folder_.write_file("summary.json", s.dump(2) + "\n");
     folder_.seal();
   }
 
   /// A picture that cannot be drawn is a warning: the figures are in fit.json.
-  void draw() const {
+  template <class Make>
+  void attempt(const char* name, Make&& figure) const {
     if (options_.no_plot) return;
-    const auto attempt = [&](const char* name, auto&& figure) {
-      try {
-        figure().render_svg(folder_.file(name));
-      } catch (const report::PlotError& error) {
-        fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
-      } catch (const std::logic_error& error) {
-        fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
-      }
-    };
+    try {
+      figure().render_svg(folder_.file(name));
+    } catch (const report::PlotError& error) {
+      fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+    } catch (const std::logic_error& error) {
+      fmt::print(stderr, "warning: no {}: {}\n", name, error.what());
+    }
+  }
+
+  void draw() const {
     attempt("fit.svg", [&] { return report::fit_picture(file_, problem_, result_); });
     attempt("fit_diagnostics.svg", [&] { return report::fit_diagnostics(file_, result_); });
   }
 
   void tell(const std::string& status, double seconds) const {
-    const auto& u = result_.uncertainty;
     if (options_.json) {
       fmt::print("{}\n", Json{{"event", "done"},
                               {"folder", folder_.path().string()},
@@ -181,28 +204,8 @@ class FitRun {
     if (options_.quiet) return;
     fmt::print("{}: {}, objective {:.6g} from {} starts in {}\n", folder_.path().string(), status,
                result_.best().objective, result_.starts.size(), io::duration_text(seconds));
-    for (std::size_t i = 0; i < file_.free.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      const std::string unit = file_.free[i].unit == "-" ? "" : " " + file_.free[i].unit;
-      fmt::print("  {:<16} {:.6g}{}   95 % ({}): {}\n", file_.free[i].name, u.values[k], unit,
-                 result_.quoted[i].kind, study::quoted_words(file_, result_, i));
-    }
-    if (!result_.converged)
-      fmt::print(
-          "  not converged: the limit of evaluations (solver.{} = {}) ended every start of "
-          "the best optimum; values and intervals are provisional\n",
-          file_.coarse.empty() ? "local_evaluations" : "fine_evaluations",
-          file_.coarse.empty() ? file_.options.local_evaluations : file_.fine_evaluations);
-    if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
-      fmt::print("  worst determined: {}\n", u.combinations.front().words);
-    for (const std::string& text : study::discrepancies(file_, problem_, result_))
-      fmt::print("  does not follow: {}\n", text);
-    if (result_.clusters.size() > 1) {
-      const auto& c = result_.clusters;
-      fmt::print("  {} distinct optima; the best from {} of {} starts{}\n", c.size(),
-                 c.front().starts.size(), result_.starts.size(),
-                 c[1].same_prediction ? ", another fits as well" : "");
-    }
+    for (const std::string& line : study::fit_words(file_, problem_, result_))
+      fmt::print("  {}\n", line);
   }
 
   FitArguments arguments_;
@@ -213,6 +216,7 @@ class FitRun {
   calibration::Problem problem_;
   io::ResultFolder folder_;
   study::FitResult result_;
+  study::PosteriorResult posterior_;
   std::string write_error_;
 };
 
@@ -232,8 +236,12 @@ Command add_fit(CLI::App& root) {
       "  repose fit FIT.toml --starts-from 0 --starts-to 32 -o shard0     one share of a campaign\n"
       "  repose fit FIT.toml --merge shard0 shard1 -o whole               all shares as one "
       "result\n"
+      "  repose fit FIT.toml --posterior                                  draws of all that the "
+      "data leave open\n"
       "Writes fit.json, fitted.toml (a [law] table), predictions.csv, fit.svg,\n"
-      "fit_diagnostics.svg, starts.jsonl, summary.json and input.toml.");
+      "fit_diagnostics.svg, starts.jsonl, summary.json and input.toml; with a posterior\n"
+      "posterior.json, posterior.csv, posterior_bands.csv, posterior_bands.svg,\n"
+      "posterior_corner.svg and chains.jsonl.");
   const auto options = std::make_shared<CommonOptions>();
   options->seed = 1;
   const auto file = std::make_shared<std::string>();
@@ -245,10 +253,23 @@ Command add_fit(CLI::App& root) {
                "I");
   verb.integer("--starts-to", arguments->starts_to, 1, most_starts,
                "One past the last start of this share", "J");
+  verb.flag("--posterior", arguments->posterior,
+            "Draw from the posterior, as [posterior] says or by default");
+  verb.integer("--chains-from", arguments->chains_from, 0, most_starts,
+               "First chain of this share of the posterior", "I");
+  verb.integer("--chains-to", arguments->chains_to, 1, most_starts,
+               "One past the last chain of this share", "J");
   verb.flag("--strict", arguments->strict, "Exit with 3 if the fit is not converged");
-  verb.option("--merge", arguments->merge, "Take the starts from these result folders", "DIR...");
+  verb.option("--merge", arguments->merge,
+              "Take the starts, and the chains, from these result folders", "DIR...");
   return {verb.app(), options, [options, file, arguments] {
-            return run_fit(input::InputFile::read(*file, options->sets), *arguments, *options);
+            input::InputFile given = input::InputFile::read(*file, options->sets);
+            if (arguments->posterior && !given.root().contains("posterior")) {
+              const std::vector<std::string> table{
+                  fmt::format("posterior.chains={}", calibration::PosteriorOptions{}.chains)};
+              given = given.with(table);
+            }
+            return run_fit(given, *arguments, *options);
           }};
 }
 

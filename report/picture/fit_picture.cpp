@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "calibration/dense.hpp"
+#include "report/picture/fit_axes.hpp"
 
 namespace repose::report {
 namespace {
@@ -13,52 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::vector<double> scaled(const VectorXd& v, double factor) {
-  std::vector<double> out(v.begin(), v.end());
-  for (double& x : out) x *= factor;
-  return out;
-}
-
-/// A column's name in a picture and the factor from SI: "q_Pa" → ("q (kPa)", 1e-3).
-/// strain: which strain a strain is.
-std::pair<std::string, double> label(const std::string& column, const std::string& strain) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 12> symbols{
-      std::pair{"eps_a", "ε_{a}"},
-      {"eps_r", "ε_{r}"},
-      {"eps_v", "ε_{v}"},
-      {"eps_q", "ε_{q}"},
-      {"gamma", "γ"},
-      {"p", "p′"},
-      {"q", "q"},
-      {"sigma_a", "σ′_{a}"},
-      {"sigma_r", "σ′_{r}"},
-      {"tau", "τ"},
-      {"mu", "μ"},
-      {"shear_rate", "shear rate"}};
-  std::string name = column, unit;
-  double factor = 1.0;
-  if (column.ends_with("_Pa")) {
-    name.resize(name.size() - 3);
-    unit = "kPa";
-    factor = 1e-3;
-  } else if (column.starts_with("eps_") || column == "gamma") {
-    unit = column == "gamma" || strain.empty() ? "%" : strain + ", %";
-    factor = 100.0;
-  } else if (column.ends_with("_per_s")) {
-    name.resize(name.size() - 6);
-    unit = "1/s";
-  } else if (const auto at = column.rfind('_'); at != std::string::npos && column != "rho_0") {
-    name.resize(at);
-    unit = column.substr(at + 1);
-  }
-  for (const auto& [plain, symbol] : symbols)
-    if (name == plain) {
-      name = symbol;
-      break;
-    }
-  return {unit.empty() ? name : fmt::format("{} ({})", name, unit), factor};
-}
 
 /// Standard deviation of every simulated value, from the covariance of the parameters: two
 /// simulations per parameter direction.
@@ -162,11 +117,8 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
     const auto& t = file.targets[k];
     const MatrixXd sd = prediction_sd(problem, result, k);
     const MatrixXd simulated = problem.predict(k, result.best().z).simulated;
-    const auto [x_label, x_factor] = label(t.x_name, file.about[k].strain);
-    // strains, times and places are read evenly; pressures, rates and inertial numbers by decades
-    const bool even = t.x_name.starts_with("eps_") || t.x_name == "time_s" || t.x_name == "x_m";
-    const bool log_x = !even && t.x.minCoeff() > 0.0 && t.x.maxCoeff() > 8.0 * t.x.minCoeff();
-    const AxisScale scale = log_x ? AxisScale::logarithmic : AxisScale::linear;
+    const auto [x_label, x_factor] = column_label(t.x_name, file.about[k].strain);
+    const AxisScale scale = scale_over(t);
     const auto x = scaled(t.x, x_factor);
     std::vector<std::string> names;
     for (const calibration::Channel& c : t.channels) names.push_back(c.name);
@@ -175,7 +127,7 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
     const bool ordered = std::is_sorted(x.begin(), x.end());
     for (std::size_t c = 0; c < t.channels.size(); ++c) {
       const auto col = static_cast<Index>(c);
-      const auto [y_label, factor] = label(t.channels[c].name, file.about[k].strain);
+      const auto [y_label, factor] = column_label(t.channels[c].name, file.about[k].strain);
       const VectorXd s = simulated.col(col), b = result.uncertainty.quantile * sd.col(col);
       Axes& axes = figure.add_axes();
       axes.title = t.name + (t.held_out ? " (held out, predicted)" : "");

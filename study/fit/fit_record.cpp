@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include <fmt/core.h>
 
 #include "input/read_law.hpp"
-#include "io/fingerprint.hpp"
 #include "io/json.hpp"
-#include "io/progress.hpp"
 #include "io/result_folder.hpp"
 #include "models/instruction_set.hpp"
 #include "repose_version.hpp"
+#include "study/fit/journal.hpp"
 
 namespace repose::study {
 namespace {
@@ -21,23 +19,6 @@ using calibration::Optimum;
 using calibration::StartResult;
 using Eigen::Index;
 using Json = io::Json;
-
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-Json list(const Eigen::VectorXd& v) {
-  Json out = Json::array();
-  for (const double x : v) out.push_back(number(x));
-  return out;
-}
-
-Eigen::VectorXd vector(const Json& list) {
-  Eigen::VectorXd v(static_cast<Index>(list.size()));
-  for (Index i = 0; i < v.size(); ++i)
-    v[i] = list[static_cast<std::size_t>(i)].is_null()
-               ? std::nan("")
-               : list[static_cast<std::size_t>(i)].get<double>();
-  return v;
-}
 
 Json json_of(const Optimum& o) {
   Json out;
@@ -57,7 +38,7 @@ Json json_of(const Optimum& o) {
 
 Optimum optimum_of(const Json& j) {
   Optimum o;
-  o.z = vector(j.at("z"));
+  o.z = vector_of(j.at("z"));
   o.objective = j.at("objective").is_null() ? std::numeric_limits<double>::infinity()
                                             : j.at("objective").get<double>();
   o.why = j.at("why").get<std::string>();
@@ -145,6 +126,39 @@ std::vector<std::string> discrepancies(const input::FitFile& file,
                "starts (solver.starts) and the law"));
   }
   return texts;
+}
+
+std::vector<std::string> fit_words(const input::FitFile& file, const calibration::Problem& problem,
+                                   const FitResult& result) {
+  std::vector<std::string> lines;
+  const auto& u = result.uncertainty;
+  if (!result.coarse.empty()) {
+    const StartResult& fine = result.starts.front();
+    lines.push_back(
+        fmt::format("coarse: objective {:.5g} from {} starts; fine: {:.5g} after {} evaluations",
+                    fine.global.objective, result.coarse.size(), fine.optimum.objective,
+                    fine.optimum.evaluations + fine.optimum.gradients));
+  }
+  for (std::size_t i = 0; i < file.free.size(); ++i)
+    lines.push_back(fmt::format("{:<16} {:.6g}{}   95 % ({}): {}", file.free[i].name,
+                                u.values[static_cast<Index>(i)],
+                                file.free[i].unit == "-" ? "" : " " + file.free[i].unit,
+                                result.quoted[i].kind, quoted_words(file, result, i)));
+  if (!result.converged)
+    lines.push_back(
+        fmt::format("not converged: the limit of evaluations (solver.{} = {}) ended every start of "
+                    "the best optimum; values and intervals are provisional",
+                    file.coarse.empty() ? "local_evaluations" : "fine_evaluations",
+                    file.coarse.empty() ? file.options.local_evaluations : file.fine_evaluations));
+  if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
+    lines.push_back("worst determined: " + u.combinations.front().words);
+  for (const std::string& text : discrepancies(file, problem, result))
+    lines.push_back("does not follow: " + text);
+  if (const auto& c = result.clusters; c.size() > 1)
+    lines.push_back(fmt::format("{} distinct optima; the best from {} of {} starts{}", c.size(),
+                                c.front().starts.size(), result.starts.size(),
+                                c[1].same_prediction ? ", another fits as well" : ""));
+  return lines;
 }
 
 Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
@@ -357,8 +371,29 @@ std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
   return text;
 }
 
-std::string journal_head(const input::FitFile& file) {
-  return Json{{"fit", file.name}, {"fingerprint", file.fingerprint}}.dump() + "\n";
+Json fit_summary(const input::FitFile& file, const std::string& status, const Usage& before,
+                 const Json& report) {
+  const Usage after = usage();
+  Json s;
+  s["repose"] = version_string;
+  s["instruction_set"] = instruction_set();
+  s["kind"] = "fit";
+  s["name"] = file.name;
+  s["status"] = status;
+  s["seed"] = file.options.seed;
+  s["wall_s"] = after.wall_s - before.wall_s;
+  s["cpu_s"] = after.cpu_s - before.cpu_s;
+  s["peak_memory_MB"] = after.peak_memory_MB;
+  for (const char* key : {"objective", "parameters", "counts", "discrepancy"})
+    if (report.contains(key)) s[key] = report[key];
+  s["input"] = file.resolved;
+  return s;
+}
+
+std::string starts_journal(const input::FitFile& file, const std::vector<StartResult>& starts) {
+  std::string text = Json{{"fit", file.name}, {"fingerprint", file.fingerprint}}.dump() + "\n";
+  for (const StartResult& s : starts) text += journal_line(s);
+  return text;
 }
 
 std::string journal_line(const StartResult& start) {
@@ -367,63 +402,21 @@ std::string journal_line(const StartResult& start) {
   j["from"] = list(start.from);
   if (start.global.z.size() > 0) j["global"] = json_of(start.global);
   j["optimum"] = json_of(start.optimum);
-  const std::string line = j.dump();
-  return fmt::format("{},\"checksum\":\"{}\"}}\n", line.substr(0, line.size() - 1),
-                     io::fingerprint_of(line));
+  return journal_line(j);
 }
 
 namespace {
 
-/// Whether a line of a journal is the one that was written: its last member is the checksum of the
-/// line without it.
-bool has_own_checksum(const std::string& line, const Json& json) {
-  const std::string sum = json.value("checksum", "");
-  const std::string tail = fmt::format(",\"checksum\":\"{}\"}}", sum);
-  return line.ends_with(tail) &&
-         sum == io::fingerprint_of(line.substr(0, line.size() - tail.size()) + "}");
-}
-
-}  // namespace
-
-std::vector<StartResult> read_journal(const std::filesystem::path& path,
-                                      const input::FitFile& file) {
+std::vector<StartResult> read_one(const std::filesystem::path& path, const input::FitFile& file) {
   std::vector<StartResult> starts;
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return starts;
-  std::ifstream in(path);
-  if (!in) throw io::IoError(path, "cannot read", errno);
-  std::string line;
-  bool first = true;
-  while (std::getline(in, line)) {
-    const bool whole = !in.eof();
-    const auto json = Json::try_parse(line);
-    if (!json || !whole) break;  // cut short by a kill
-    const Json& j = *json;
-    if (!first && !has_own_checksum(line, j)) {
-      io::warn_of_damage(path.string(), "a start is not as it was written",
-                         "so it and those behind it are made again");
-      break;
-    }
-    if (first) {
-      first = false;
-      if (j.value("fingerprint", "") != file.fingerprint)
-        throw input::BadInput(
-            {fmt::format("{}: these starts belong to another fit (input, data or seed "
-                         "differ); use another folder, or start anew without --resume",
-                         path.string())});
-      continue;
-    }
-    try {
-      StartResult s;
-      s.index = j.at("start").get<int>();
-      s.from = vector(j.at("from"));
-      if (j.contains("global")) s.global = optimum_of(j.at("global"));
-      s.optimum = optimum_of(j.at("optimum"));
-      starts.push_back(std::move(s));
-    } catch (const io::Json::Error&) {
-      throw input::BadInput({fmt::format("{}: not a journal of starts", path.string())});
-    }
-  }
+  read_journal(path, "start", file.fingerprint, [&](const Json& j) {
+    StartResult s;
+    s.index = j.at("start").get<int>();
+    s.from = vector_of(j.at("from"));
+    if (j.contains("global")) s.global = optimum_of(j.at("global"));
+    s.optimum = optimum_of(j.at("optimum"));
+    starts.push_back(std::move(s));
+  });
   return starts;
 }
 
@@ -443,6 +436,16 @@ void merge_into(std::vector<StartResult>& all, std::vector<StartResult> more,
   }
   std::sort(all.begin(), all.end(),
             [](const StartResult& a, const StartResult& b) { return a.index < b.index; });
+}
+
+}  // namespace
+
+std::vector<StartResult> read_starts(const std::vector<std::filesystem::path>& journals,
+                                     const input::FitFile& file) {
+  std::vector<StartResult> all;
+  for (const std::filesystem::path& path : journals)
+    merge_into(all, read_one(path, file), path.string());
+  return all;
 }
 
 }  // namespace repose::study

@@ -7,6 +7,7 @@
 #include "calibration/uncertainty.hpp"
 #include "input/read_fit.hpp"
 #include "io/json.hpp"
+#include "study/run/run_record.hpp"
 
 namespace repose::study {
 
@@ -42,20 +43,28 @@ std::vector<std::string> discrepancies(const input::FitFile& file,
                                        const calibration::Problem& problem,
                                        const FitResult& result);
 
+/// What `repose fit` tells of a fit, line by line: values with their intervals, what is worst
+/// determined, where the model does not follow the data, other optima.
+std::vector<std::string> fit_words(const input::FitFile& file, const calibration::Problem& problem,
+                                   const FitResult& result);
+
 /// "0.93 to 1.04 Pa", "at most 0.031 (its bound is 0.005)", "the data do not determine it": the
 /// recommended 95 % interval.
 std::string quoted_words(const input::FitFile& file, const FitResult& result,
                          std::size_t parameter);
 
-/// One line per finished start, and back. A journal begins with the fit's fingerprint; a line that
-/// was cut short, or is not as it was written by its checksum, is ignored with those behind it.
-std::string journal_head(const input::FitFile& file);
+/// The text of summary.json; before: the usage when the fit began.
+io::Json fit_summary(const input::FitFile& file, const std::string& status, const Usage& before,
+                     const io::Json& report);
+
+/// The journal of starts (journal.hpp): its head names the fit, then a line per finished start.
+std::string starts_journal(const input::FitFile& file,
+                           const std::vector<calibration::StartResult>& starts);
 std::string journal_line(const calibration::StartResult& start);
-/// Errors: BadInput if the journal belongs to another fit, or lists other numbers for the same
-/// start; IoError if it cannot be read. An absent file is an empty journal.
-std::vector<calibration::StartResult> read_journal(const std::filesystem::path& path,
-                                                   const input::FitFile& file);
-void merge_into(std::vector<calibration::StartResult>& all,
-                std::vector<calibration::StartResult> more, const std::string& from);
+/// The starts of several journals by index, absent ones being empty. Errors: BadInput if one
+/// belongs to another fit, or the same start ended elsewhere in two of them; IoError if one cannot
+/// be read.
+std::vector<calibration::StartResult> read_starts(
+    const std::vector<std::filesystem::path>& journals, const input::FitFile& file);
 
 }  // namespace repose::study

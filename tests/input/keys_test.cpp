@@ -548,6 +548,9 @@ TEST(KeyTable, TyposInsideTheEntriesOfAFitAreRefused) {
   EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", "[solver]\nstart = 3\n")
                 .find("did you mean 'starts'?"),
             std::string::npos);
+  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", "[posterior]\ndrawss = 300\n")
+                .find("did you mean 'draws'?"),
+            std::string::npos);
   EXPECT_NE(
       complain("{ lower = 0.5, upper = 1.5 }", "wieght = 2.0\n").find("did you mean 'weight'?"),
       std::string::npos);
