@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mpm/boundary/rigid_contact.hpp"
 #include "tests/mpm/saved_state.hpp"
 #include "tests/mpm/scenes.hpp"
 #include "tests/mpm/shapes.hpp"
@@ -380,6 +381,47 @@ TEST(RigidSurfaceTest, NoPointIsPushedThroughAnEdge) {
   run_until(simulation, 1.0);  // it is through the wall by then
   EXPECT_EQ(simulation.point_count(), points);
   EXPECT_EQ(simulation.diagnostics().outflow_kg_per_m, 0.0);
+}
+
+// Of so many nodes that contact sums up its work in more than one part.
+TEST(RigidSurfaceTest, ALongFloorGivesTheSameBitsOnAnyThreadsAndAfterResuming) {
+  Scene scene = empty_box(3.2, 0.4, 0.02);
+  scene.transfer = Transfer::relaxed;
+  scene.gravity = g;
+  Surface plane;
+  plane.solid.shape = HalfSpace{{0.0, 0.07, 0.0}, {0.02, 1.0, 0.0}};
+  plane.contact = Surface::Contact::friction;
+  plane.friction = 0.3;
+  scene.surfaces = {plane};
+  scene.bodies = {block(0.1, 0.06, 3.0, 0.1, mu_i(254800.0))};
+  scene.bodies[0].velocity = {0.5, 0.0, 0.0};
+  Simulation straight(scene, 1), parallel(scene, 2), resumed(scene, 2);
+  ScratchFile file;
+  for (int step = 0; step < 120; ++step) {
+    if (step == 47) straight.save(file.path());
+    straight.step(HUGE_VAL);
+    parallel.step(HUGE_VAL);
+  }
+  EXPECT_EQ(saved_state(parallel), saved_state(straight));
+  resumed.load(file.path());
+  for (int step = 47; step < 120; ++step) resumed.step(HUGE_VAL);
+  EXPECT_EQ(saved_state(resumed), saved_state(straight));
+}
+
+// How far a surface puts points counts for how far they may have gone since they were sorted.
+TEST(RigidSurfaceTest, SaysHowFarItPutsPoints) {
+  Surface ball;
+  ball.solid.shape = Ball{{0.5, 0.5, 0.0}, 0.2};
+  ball.velocity = {1.0, 0.0, 0.0};
+  const RigidContact<2> contact({ball});
+  std::array<double, 3> x{0.5, 0.65, 0.9}, y{0.31, 0.5, 0.9};
+  const double hair = 1e-9;
+  // at t = 0.1 s the middle is at x = 0.6: of the first it is 0.1 and 0.19 away, of the second 0.05
+  const double deepest = 0.2 - 0.05 + hair;
+  EXPECT_NEAR(contact.keep_out({x.data(), y.data()}, 3, 0.1, hair), deepest, 1e-15);
+  EXPECT_NEAR(x[1], 0.65 + deepest, 1e-15);
+  EXPECT_EQ(x[0], 0.5) << "0.2147 from the middle: it is outside";
+  EXPECT_EQ(contact.keep_out({x.data(), y.data()}, 3, 0.1, 0.0), 0.0);
 }
 
 // What surfaces cover is not there, and a body of which nothing is left is a mistake.
