@@ -576,20 +576,22 @@ double RigidContact<dim>::keep_out(const std::array<double*, dim>& x, std::size_
                                    double time, double hair) const {
   double farthest = 0.0;
   if (count == 0) return farthest;
-  Position middle{};  // of the box around all places, and how far they are from it
-  double radius2 = 0.0;
-  for (std::size_t i = 0; i < dim; ++i) {
-    const auto [least, most] = std::minmax_element(x[i], x[i] + count);
-    middle[i] = 0.5 * (*least + *most);
-    radius2 += 0.25 * (*most - *least) * (*most - *least);
-  }
+  // one look for all, where a look is long: at the middle of the box around them
+  const auto all_beyond = [&](const Surface& surface) {
+    Position middle{};
+    double radius2 = 0.0;
+    for (std::size_t i = 0; i < dim; ++i) {
+      const auto [least, most] = std::minmax_element(x[i], x[i] + count);
+      middle[i] = 0.5 * (*least + *most);
+      radius2 += 0.25 * (*most - *least) * (*most - *least);
+    }
+    return !surface.holds_at(time, middle) &&
+           surface.is_beyond_at(time, middle, std::sqrt(radius2));
+  };
   for (std::size_t k = 0; k < surfaces_.size(); ++k) {
     const Surface& surface = surfaces_[k];
     const bool has_lids = k < layers_.size() && !layers_[k].lids.empty();
-    // one look instead of one for each place, where a look is long
-    if (surface.is_complex() && !surface.holds_at(time, middle) &&
-        surface.is_beyond_at(time, middle, std::sqrt(radius2)))
-      continue;
+    if (surface.is_complex() && all_beyond(surface)) continue;
     for (std::size_t n = 0; n < count; ++n) {
       if (has_lids && is_above_lid(layers_[k].lids, x, n)) continue;
       Position place{};

@@ -253,8 +253,8 @@ TEST_F(CommandTest, BadInputIsToldWithItsPlaceAndLeavesNothing) {
   EXPECT_EQ(wrong.exit, 2);
   EXPECT_EQ(
       wrong.err,
-      "wrong.toml:15:1: output.colour must be one of \"mises\", \"density\"; got the string "
-      "\"red\"\n"
+      "wrong.toml:15:1: output.colour must be one of \"mises\", \"density\", \"body\"; got the "
+      "string \"red\"\n"
       "wrong.toml:16:1: unknown key 'foo' in [output]; [output] takes checkpoint_interval, colour, "
       "final_state, frame_interval, grid_frames, series_interval, shear_strain, stress\n");
   const Json event = Json::parse(wrong.out);
