@@ -200,6 +200,8 @@ void GridOf<dim>::connect() {
           .point_block[Shape<dim>::around - 1 - k] = static_cast<std::int32_t>(p);
     });
   }
+  // nothing of them is kept: no room for old and new at once
+  if (tiles.capacity() < point_blocks.size()) tiles = {};
   tiles.resize(point_blocks.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles.size()), [&](const auto& r) {
     for (std::size_t k = r.begin(); k != r.end(); ++k)
