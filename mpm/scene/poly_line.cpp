@@ -132,6 +132,12 @@ PolyLine::PolyLine(std::vector<Point> points, bool closed)
   tree_ = tree_of(edges);
 }
 
+/// Where along an edge the nearest of its points lies, from 0 to 1.
+double PolyLine::Edge::along(const Position& x) const {
+  const Point e{to[0] - from[0], to[1] - from[1]}, r{x[0] - from[0], x[1] - from[1]};
+  return std::clamp((r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1]), 0.0, 1.0);
+}
+
 PolyLine::Foot PolyLine::foot_of(const Position& x) const {
   Foot found;
   double best = HUGE_VAL;
@@ -139,8 +145,7 @@ PolyLine::Foot PolyLine::foot_of(const Position& x) const {
     const Edge& edge = edges_[k];
     const Point e{edge.to[0] - edge.from[0], edge.to[1] - edge.from[1]};
     const Point r{x[0] - edge.from[0], x[1] - edge.from[1]};
-    const double along =
-        std::clamp((r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1]), 0.0, 1.0);
+    const double along = edge.along(x);
     const Point d = along == 1.0 ? Point{x[0] - edge.to[0], x[1] - edge.to[1]}
                                  : Point{r[0] - along * e[0], r[1] - along * e[1]};
     const double across = r[0] * edge.outward[0] + r[1] * edge.outward[1];
@@ -179,8 +184,7 @@ bool PolyLine::is_beyond(const Position& x, double radius) const {
     const Edge& edge = edges_[k];
     const Point e{edge.to[0] - edge.from[0], edge.to[1] - edge.from[1]};
     const Point r{x[0] - edge.from[0], x[1] - edge.from[1]};
-    const double along =
-        std::clamp((r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1]), 0.0, 1.0);
+    const double along = edge.along(x);
     const double dx = r[0] - along * e[0], dy = r[1] - along * e[1];
     if (dx * dx + dy * dy > least) return;
     beyond = false;

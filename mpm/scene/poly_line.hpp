@@ -46,6 +46,7 @@ class PolyLine {
   struct Edge {
     std::array<double, 2> from, to;
     std::array<double, 2> outward;  ///< of length 1
+    double along(const Position& x) const;
   };
   /// The edge nearest to x, the place on it, from 0 to 1, and the square of the distance.
   struct Foot {

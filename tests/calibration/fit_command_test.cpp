@@ -14,6 +14,7 @@
 #include "io/json.hpp"
 #include "study/fit/fit_record.hpp"
 #include "study/fit/twin.hpp"
+#include "tests/calibration/clay_fit.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {
@@ -43,26 +44,7 @@ class FitCommand : public testing::Test {
                           1e-3 * t.channels[1].observed[i]);
     return text;
   }
-  static std::string fit_text() {
-    return R"([law]
-name = "modified_cam_clay"
-compression = "ln_v-ln_p"
-lambda = 0.161
-nu = 0.3
-Gamma = 2.759
-[fit]
-M = { lower = 0.4, upper = 1.8 }
-kappa = { lower = 0.02, upper = 0.15, scale = "log" }
-[[target]]
-data = "cu.csv"
-x = "eps_a"
-y = ["q_Pa", "u_Pa"]
-test = { kind = "triaxial", drainage = "undrained", axial_strain = 0.1 }
-initial = { p = 200e3, ocr = 1.0 }
-[solver]
-starts = 6
-)";
-  }
+  static std::string fit_text() { return clay_fit + std::string("[solver]\nstarts = 6\n"); }
   static std::string replaced(std::string text, const std::string& what, const std::string& by) {
     const auto at = text.find(what);
     EXPECT_NE(at, std::string::npos) << what;

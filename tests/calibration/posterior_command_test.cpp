@@ -11,6 +11,7 @@
 #include "io/json.hpp"
 #include "study/fit/posterior_record.hpp"
 #include "study/fit/twin.hpp"
+#include "tests/calibration/clay_fit.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace repose::app {
@@ -40,22 +41,7 @@ class PosteriorCommand : public testing::Test {
     return text;
   }
   static std::string text(const std::string& posterior) {
-    return R"([law]
-name = "modified_cam_clay"
-compression = "ln_v-ln_p"
-lambda = 0.161
-nu = 0.3
-Gamma = 2.759
-[fit]
-M = { lower = 0.4, upper = 1.8 }
-kappa = { lower = 0.02, upper = 0.15, scale = "log" }
-[[target]]
-data = "cu.csv"
-x = "eps_a"
-y = ["q_Pa", "u_Pa"]
-test = { kind = "triaxial", drainage = "undrained", axial_strain = 0.1 }
-initial = { p = 200e3, ocr = 1.0 }
-[[target]]
+    return clay_fit + std::string(R"([[target]]
 data = "cd.csv"
 held_out = true
 x = "eps_a"
@@ -64,7 +50,7 @@ test = { kind = "triaxial", drainage = "drained", axial_strain = 0.15 }
 initial = { p = 100e3, ocr = 3.0 }
 [solver]
 starts = 2
-)" + posterior;
+)") + posterior;
   }
 
   void write(const std::string& name, const std::string& content) const {

@@ -250,17 +250,8 @@ TEST(Posterior, WithADiscrepancyWeighsRowsByItsCovariance) {
 
 /// A decay with every kind of parameter: on a logarithm with a prior, a ratio with a relative one.
 Problem decay_with_priors(double below_of = 0.0) {
-  auto simulator = std::make_shared<Decay>(decay_x());
-  Target t;
-  t.name = "decay";
-  t.simulator = simulator;
-  t.inputs = {1.0, 1.0};
-  t.bindings = {{0, 0}, {1, 1}};
-  Response r;
-  const std::array<double, 2> truth{2.0, 1.3};
-  simulator->simulate(truth, {}, r);
-  t.x = r.x;
-  t.channels.push_back({"y", r.y.col(0) + 0.02 * white(r.y.rows(), 11), {}, 1.0});
+  const Target t = decay_target(std::make_shared<Decay>(decay_x()), 2.0, 1.3,
+                                0.02 * white(static_cast<Index>(decay_x().size()), 11));
   std::vector<FreeParameter> free{free_parameter("a", 0.5, 6.0, Scale::log),
                                   free_parameter("b", 0.2, 3.0)};
   free[0].prior = Prior{1.9, 0.4};
@@ -416,17 +407,8 @@ TEST(Chains, StopWhereTheyAreInterrupted) {
 
 TEST(Chains, KeepOutOfWhatBreaksOff) {
   // paths with b > 1.6 break off: beyond it there is nothing
-  auto simulator = std::make_shared<Decay>(decay_x(), Trap::breaks_off, 1.6);
-  Target t;
-  t.name = "decay";
-  t.simulator = simulator;
-  t.inputs = {1.0, 1.0};
-  t.bindings = {{0, 0}, {1, 1}};
-  Response r;
-  const std::array<double, 2> truth{2.0, 1.55};
-  simulator->simulate(truth, {}, r);
-  t.x = r.x;
-  t.channels.push_back({"y", r.y.col(0) + 0.1 * white(r.y.rows(), 12), {}, 1.0});
+  const Target t = decay_target(std::make_shared<Decay>(decay_x(), Trap::breaks_off, 1.6), 2.0,
+                                1.55, 0.1 * white(static_cast<Index>(decay_x().size()), 12));
   const Problem problem(
       ParameterSpace({free_parameter("a", 0.1, 10.0), free_parameter("b", 0.05, 6.0)}), {t});
   PosteriorOptions options;

@@ -107,21 +107,29 @@ inline FreeParameter free_parameter(const char* name, double lower, double upper
   return p;
 }
 
-/// a exp(−b x), a = 2, b = 1.3 in x = 0.1 … 2, a in [0.1, 10] (log), b in [0.05, 6].
-inline Problem decay_problem(std::shared_ptr<Decay> simulator) {
+/// Its curve with these a and b in x = 0.1 … 2 as what was measured, with errors added if there
+/// are.
+inline Target decay_target(std::shared_ptr<Decay> simulator, double a, double b,
+                           const Eigen::VectorXd& errors = {}) {
   Target t;
   t.name = "decay";
   t.simulator = simulator;
   t.inputs = {1.0, 1.0};
   t.bindings = {{0, 0}, {1, 1}};
   Response r;
-  const std::array<double, 2> truth{2.0, 1.3};
+  const std::array<double, 2> truth{a, b};
   simulator->simulate(truth, {}, r);
   t.x = r.x;
-  t.channels.push_back({"y", r.y.col(0), {}, 1.0});
+  Eigen::VectorXd y = r.y.col(0);
+  if (errors.size() > 0) y += errors;
+  t.channels.push_back({"y", y, {}, 1.0});
+  return t;
+}
+/// a exp(−b x), a = 2, b = 1.3, a in [0.1, 10] (log), b in [0.05, 6].
+inline Problem decay_problem(std::shared_ptr<Decay> simulator) {
   return Problem(
       ParameterSpace({free_parameter("a", 0.1, 10.0, Scale::log), free_parameter("b", 0.05, 6.0)}),
-      {t});
+      {decay_target(std::move(simulator), 2.0, 1.3)});
 }
 
 inline std::vector<double> decay_x() {
