@@ -139,12 +139,19 @@ void remove_old_parts(const std::filesystem::path& folder,
 
 void write_atomically(const std::filesystem::path& path, std::string_view content,
                       Outlives outlives) {
+  write_atomically(path, {content}, outlives);
+}
+
+void write_atomically(const std::filesystem::path& path,
+                      std::initializer_list<std::string_view> parts, Outlives outlives) {
   refuse_special_file(path);
   std::filesystem::path part;
   Descriptor fd(open_part(path, part));
   if (fd.get() < 0) throw IoError(path, "cannot create the file", errno);
 
-  int error = write_fully(fd.get(), content);
+  int error = 0;
+  for (const std::string_view content : parts)
+    if (error == 0) error = write_fully(fd.get(), content);
   if (error == 0 && outlives == Outlives::power_cut) error = flush_to_disk(fd.get());
   if (fd.close() != 0 && error == 0) error = errno;
   if (error == 0 && ::rename(part.c_str(), path.c_str()) != 0) error = errno;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -38,6 +39,10 @@ enum class Outlives : std::uint8_t { power_cut, kill };
 /// followed. content: bytes, of any length. Errors: IoError; a folder, device or pipe of that name
 /// is one.
 void write_atomically(const std::filesystem::path& path, std::string_view content,
+                      Outlives outlives = Outlives::power_cut);
+/// The same of parts that follow each other in the file, and need not in memory.
+void write_atomically(const std::filesystem::path& path,
+                      std::initializer_list<std::string_view> parts,
                       Outlives outlives = Outlives::power_cut);
 
 /// Removes what killed processes have left in a folder (".NAME.PID-N.repose-part", or of older

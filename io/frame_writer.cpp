@@ -80,13 +80,13 @@ fs::path FrameWriter::write_next(const View& frame) {
   const fs::path path = folder_ / name;
   std::string image;
   try {
-    image = sealed(vtkhdf_image(frame));
+    image = vtkhdf_image(frame);
   } catch (const std::invalid_argument&) {
     throw;
   } catch (const std::runtime_error& error) {
     throw IoError(path, error.what());
   }
-  write_atomically(path, image);
+  write_atomically(path, {image, seal_of(image)});
 
   // The series is written before the frame counts, so that a failure leaves this writer as it was.
   std::vector<Entry> frames = frames_;

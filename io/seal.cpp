@@ -18,15 +18,10 @@ constexpr std::string_view mark = "repose-seal ";
 constexpr std::size_t most_of_a_stream = 32'000'000;
 constexpr std::size_t seal_length = mark.size() + 20 + 1 + 16 + 1;
 
-std::string seal_of(std::string_view content) {
-  return fmt::format("{}{:020} {}\n", mark, content.size(), fingerprint_of(content));
-}
-
 }  // namespace
 
-std::string sealed(std::string content) {
-  content += seal_of(content);
-  return content;
+std::string seal_of(std::string_view content) {
+  return fmt::format("{}{:020} {}\n", mark, content.size(), fingerprint_of(content));
 }
 
 std::string read_bytes(const std::filesystem::path& file, std::size_t most) {

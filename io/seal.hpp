@@ -10,9 +10,9 @@
 
 namespace repose::io {
 
-/// The content with its seal behind it. Readers that go by the length in the file itself, as HDF5
-/// and ParaView do, do not see it.
-std::string sealed(std::string content);
+/// What is written behind a content: write_atomically(file, {content, seal_of(content)}). Readers
+/// that go by the length in the file itself, as HDF5 and ParaView do, do not see it.
+std::string seal_of(std::string_view content);
 
 /// The content of a sealed file. Errors: IoError if it cannot be read, has no seal or another one
 /// than its content has.

@@ -122,8 +122,10 @@ template <int dim>
 void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   const hdf5::Quiet quiet;
   const Impl& s = *this;
-  // assembled in memory, so that the disk sees one plain write that is whole or absent
-  const hdf5::NewFile file;
+  std::size_t bytes = std::size_t{1} << 20;
+  for (const PointsOf<dim>& points : s.bodies)
+    bytes += points.slots() * (sizeof(std::int64_t) + points.fields * sizeof(double));
+  const hdf5::NewFile file(bytes);
 
   std::vector<double> reals;
   std::vector<std::int64_t> wholes{format_version, s.must_sort ? 1 : 0,
@@ -149,8 +151,11 @@ void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const PointsOf<dim>& points = s.bodies[b];
     hdf5::write(file, fmt::format("body{}_id", b), points.id);
-    for (std::size_t f = 0; f < points.fields; ++f)
-      hdf5::write(file, fmt::format("body{}_field{}", b, f), points.values(f));
+    for (std::size_t f = 0; f < points.fields; ++f) {
+      const std::string name = fmt::format("body{}_field{}", b, f);
+      points.single ? hdf5::write(file, name, points.values(f))
+                    : hdf5::write(file, name, points.field[f]);
+    }
   }
   if (s.maps) {
     hdf5::write(file, "maps_gone", std::vector<double>{s.maps->gone});

@@ -27,7 +27,10 @@ template <int dim>
 void Simulation::Impl<dim>::save_final_state(const std::filesystem::path& path) const {
   using F = Layout<dim>;
   const hdf5::Quiet quiet;
-  const hdf5::NewFile file;
+  std::size_t bytes = std::size_t{1} << 20;
+  for (const PointsOf<dim>& points : bodies)
+    bytes += points.count * (sizeof(std::int64_t) + points.fields * sizeof(double));
+  const hdf5::NewFile file(bytes);
   hdf5::write(
       file, "wholes",
       std::vector<std::int64_t>{format_version, dim, static_cast<std::int64_t>(bodies.size())});

@@ -3,9 +3,13 @@
 /// Arrays of numbers in HDF5 files that are written whole or not at all, and sealed.
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/core.h>
@@ -45,7 +49,7 @@ inline hid_t type_of<std::int64_t>() {
 
 /// With a checksum in every chunk (Fletcher's), which reading compares.
 template <class T>
-void write(hid_t file, const std::string& name, const std::vector<T>& values) {
+void write(hid_t file, const std::string& name, std::span<const T> values) {
   const hsize_t n = values.size(), chunk = std::min<hsize_t>(n, 1 << 20);
   const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a data space");
   const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make a property list");
@@ -56,6 +60,10 @@ void write(hid_t file, const std::string& name, const std::vector<T>& values) {
       H5Dclose, "create a data set");
   if (n > 0 && H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw std::runtime_error(fmt::format("HDF5 could not write {}", name));
+}
+template <class T, class Allocator>
+void write(hid_t file, const std::string& name, const std::vector<T, Allocator>& values) {
+  write(file, name, std::span<const T>(values));
 }
 
 template <class T>
@@ -90,10 +98,13 @@ class Quiet {
 /// A file that is assembled in memory, so that the disk sees one plain write.
 class NewFile {
  public:
-  NewFile()
+  /// bytes: about as many as it will hold. (Grown by small steps and copied to be sealed, the
+  /// points of a checkpoint were three times in memory, besides those of the run.)
+  explicit NewFile(std::size_t bytes)
       : access_(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list"),
-        file_((H5Pset_fapl_core(access_, 1 << 20, false),
-               H5Fcreate("arrays", H5F_ACC_TRUNC, H5P_DEFAULT, access_)),
+        // HDF5 first tries to load a file of this name, so it is one that cannot exist
+        file_((H5Pset_fapl_core(access_, std::max(bytes, std::size_t{1} << 20), false),
+               H5Fcreate("/dev/null/arrays", H5F_ACC_TRUNC, H5P_DEFAULT, access_)),
               H5Fclose, "create a file in memory") {}
   operator hid_t() const { return file_; }
 
@@ -101,11 +112,12 @@ class NewFile {
   void save(const std::filesystem::path& path) const {
     H5Fflush(file_, H5F_SCOPE_GLOBAL);
     const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
-    if (size < 0) throw std::runtime_error("HDF5 could not give the file's size");
-    std::string image(static_cast<std::size_t>(size), '\0');
-    if (H5Fget_file_image(file_, image.data(), image.size()) < 0)
+    void* memory = nullptr;  // where the driver has the image: no copy
+    if (size < 0 || H5Fget_vfd_handle(file_, H5P_DEFAULT, &memory) < 0)
       throw std::runtime_error("HDF5 could not give the file's bytes");
-    io::write_atomically(path, io::sealed(std::move(image)));
+    const std::string_view content(*static_cast<const char* const*>(memory),
+                                   static_cast<std::size_t>(size));
+    io::write_atomically(path, {content, io::seal_of(content)});
   }
 
  private:
@@ -116,19 +128,18 @@ class NewFile {
 class SealedFile {
  public:
   explicit SealedFile(const std::filesystem::path& path)
-      : image_(io::read_sealed(path)),
-        access_(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list"),
-        file_(opened(), H5Fclose, "open its arrays") {}
+      : access_(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make a property list"),
+        file_(opened(io::read_sealed(path)), H5Fclose, "open its arrays") {}
   operator hid_t() const { return file_; }
 
  private:
-  hid_t opened() {
+  hid_t opened(std::string image) {
     H5Pset_fapl_core(access_, 1, false);
-    if (H5Pset_file_image(access_, image_.data(), image_.size()) < 0)
+    if (H5Pset_file_image(access_, image.data(), image.size()) < 0)
       throw std::runtime_error("HDF5 takes no image");
+    image = {};  // that was a copy, and opening makes another
     return H5Fopen("arrays", H5F_ACC_RDONLY, access_);
   }
-  std::string image_;
   Handle access_, file_;
 };
 

@@ -153,7 +153,7 @@ std::string file_of(const Arrays& arrays) {
   H5Fget_file_image(file, image.data(), image.size());
   H5Fclose(file);
   H5Pclose(access);
-  return io::sealed(std::move(image));
+  return image + io::seal_of(image);
 }
 
 /// Changes of 11 bytes: which array, what, where (2), and a number (8) or a length.

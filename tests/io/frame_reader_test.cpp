@@ -92,7 +92,7 @@ TEST_F(FrameReaderTest, WhatIsNoFrameIsRefused) {
   EXPECT_EQ(
       reason([&] { read_frame(text); }),
       text.string() + ": is cut short, or of another version of repose: its checksum is missing");
-  std::ofstream(text) << sealed("no HDF5 at all");
+  std::ofstream(text) << "no HDF5 at all" << seal_of("no HDF5 at all");
   EXPECT_EQ(reason([&] { read_frame(text); }).find(text.string() + ": not a frame: HDF5 could not"),
             0u);
   EXPECT_NE(reason([&] { read_frame(folder_ / "none.hdf"); }).find("No such file"),
