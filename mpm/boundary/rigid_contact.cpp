@@ -24,6 +24,17 @@ template <std::size_t n>
 void add(std::array<double, n>& to, double factor, const std::array<double, n>& x) {
   for (std::size_t i = 0; i < n; ++i) to[i] += factor * x[i];
 }
+/// A row of four numbers in a register, and back.
+template <class Four>
+Row loaded(const Four& row) {
+  return Row::load_aligned(row.data());
+}
+template <class Four>
+Four stored(const Row& row) {
+  Four numbers;
+  row.store_aligned(numbers.data());
+  return numbers;
+}
 template <int dim>
 Vector<dim> along_axes(const std::array<double, 3>& x) {
   Vector<dim> r;
@@ -359,7 +370,7 @@ void RigidContact<dim>::list_followers(Layer& layer) {
   layer.followers.resize(layer.first_follower.back());
   std::vector<std::size_t> next(layer.first_follower.begin(), layer.first_follower.end() - 1);
   each([&](std::size_t g, std::size_t k, std::size_t donor) {
-    layer.followers[next[donor]++] = {static_cast<std::int32_t>(g), static_cast<std::int32_t>(k)};
+    layer.followers[next[donor]++] = {layer.ghosts[g].weight[k], static_cast<std::int32_t>(g)};
   });
 }
 
@@ -372,14 +383,6 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
   const auto mass = [&](const auto& at) {
     return block(at).mass[static_cast<std::size_t>(at.place)];
   };
-  /// f(donor, weight) for the donors of a ghost that bear mass.
-  const auto each_donor = [&](const Ghost& ghost, auto&& f) {
-    for (std::size_t k = 0; k < ghost.donor.size(); ++k) {
-      if (ghost.donor[k] < 0) continue;
-      const Donor& donor = layer.donors[static_cast<std::size_t>(ghost.donor[k])];
-      if (donor.mass > 0.0) f(donor, ghost.weight[k] * ghost.per_borne);
-    }
-  };
   constexpr std::size_t chunk = 256;
   const auto chunks = [](std::size_t n) { return (n + chunk - 1) / chunk; };
   /// f(item, chunk) for all, a chunk a thread.
@@ -389,29 +392,55 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
       for (std::size_t n = c * chunk; n < end; ++n) f(n, c);
     });
   };
+  /// Σ weight × row over the donors of a ghost, or the followers of a donor.
+  const auto of_donors = [](const Ghost& ghost, auto&& row) {
+    Row sum(0.0);
+    for (std::size_t k = 0; k < ghost.donor.size(); ++k)
+      if (ghost.donor[k] >= 0)
+        sum = fma(Row(ghost.weight[k]), row(static_cast<std::size_t>(ghost.donor[k])), sum);
+    return sum;
+  };
+  const auto of_followers = [&](std::size_t donor, const std::vector<Four>& pull) {
+    Row sum(0.0);
+    for (std::size_t f = layer.first_follower[donor]; f < layer.first_follower[donor + 1]; ++f) {
+      const Follower& follower = layer.followers[f];
+      sum = fma(Row(follower.weight), loaded(pull[static_cast<std::size_t>(follower.ghost)]), sum);
+    }
+    return stored<Four>(sum);
+  };
+  /// (f x, last).
+  const auto four = [](double f, const Vector<dim>& x, double last) {
+    Four row{};
+    for (std::size_t i = 0; i < dim; ++i) row[i] = f * x[i];
+    row.back() = last;
+    return row;
+  };
+  for (std::vector<Four>* rows : {&layer.front, &layer.odd, &layer.even})
+    rows->resize(layer.donors.size());
+  for (std::vector<Four>* rows : {&layer.odd_pull, &layer.even_pull})
+    rows->resize(layer.ghosts.size());
   each(layer.donors, [&](std::size_t n, std::size_t) {
     Donor& donor = layer.donors[n];
     donor.mass = mass(donor);
-    donor.relative = read<dim>(block(donor).v, donor.place);
-    add(donor.relative, -1.0, donor.velocity);
+    Vector<dim> relative = read<dim>(block(donor).v, donor.place);
+    add(relative, -1.0, donor.velocity);
+    layer.front[n] = donor.mass > 0.0 ? four(1.0, relative, 1.0) : Four{};
   });
   each(layer.ghosts, [&](std::size_t n, std::size_t) {
     Ghost& ghost = layer.ghosts[n];
+    layer.odd_pull[n] = layer.even_pull[n] = {};
     ghost.mass = mass(ghost);
     ghost.acts = ghost.mass > 0.0;
     if (!ghost.acts) return;
-    ghost.per_borne = 1.0;
-    double borne = 0.0;
-    each_donor(ghost, [&](const Donor&, double w) { borne += w; });
-    Vector<dim> own = read<dim>(block(ghost).v, ghost.place), front{};
+    const Four sum =
+        stored<Four>(of_donors(ghost, [&](std::size_t j) { return loaded(layer.front[j]); }));
+    const double borne = sum.back();  // Σ weight over those that bear mass
+    Vector<dim> own = read<dim>(block(ghost).v, ghost.place), front;
     add(own, -1.0, ghost.velocity);
-    if (borne > 1e-9) {
-      ghost.per_borne = 1.0 / borne;
-      each_donor(ghost, [&](const Donor& donor, double w) { add(front, w, donor.relative); });
-    } else {  // nothing in front of it that it could follow
-      ghost.per_borne = 0.0;
-      front = own;
-    }
+    // nothing in front of it that it could follow: by itself
+    ghost.per_borne = borne > 1e-9 ? 1.0 / borne : 0.0;
+    for (std::size_t i = 0; i < dim; ++i)
+      front[i] = ghost.per_borne > 0.0 ? ghost.per_borne * sum[i] : own[i];
     const double s = ghost.per_borne > 0.0 ? ghost.s : 0.0;
     Vector<dim> even = front;
     if (ghost.per_borne > 0.0)
@@ -421,6 +450,10 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
     ghost.acts = !of.parts;
     ghost.odd = of.odd;
     ghost.even = of.even;
+    if (!ghost.acts) return;
+    const double pull = ghost.mass * ghost.per_borne;
+    layer.odd_pull[n] = four(-pull * s, of.odd, pull * s * s);
+    layer.even_pull[n] = four(pull, of.even, pull);
   });
   std::vector<WallEffect> effects(chunks(layer.donors.size()) + chunks(layer.ghosts.size()));
   std::vector<double> works(effects.size(), 0.0);
@@ -437,38 +470,28 @@ WallEffect RigidContact<dim>::apply(const Surface& surface, Layer& layer, GridOf
   };
   each(layer.donors, [&](std::size_t n, std::size_t c) {
     Donor& donor = layer.donors[n];
+    layer.odd[n] = layer.even[n] = {};
     if (!(donor.mass > 0.0)) return;
-    donor.odd_mass = donor.even_mass = donor.mass;
-    donor.odd = donor.even = {};
-    for (std::size_t f = layer.first_follower[n]; f < layer.first_follower[n + 1]; ++f) {
-      const Follower& follower = layer.followers[f];
-      const Ghost& ghost = layer.ghosts[static_cast<std::size_t>(follower.ghost)];
-      if (!ghost.acts) continue;
-      const double w = ghost.weight[static_cast<std::size_t>(follower.k)] * ghost.per_borne;
-      const double s = ghost.per_borne > 0.0 ? ghost.s : 0.0;
-      donor.odd_mass += ghost.mass * w * s * s;
-      donor.even_mass += ghost.mass * w;
-      add(donor.odd, -ghost.mass * w * s, ghost.odd);
-      add(donor.even, ghost.mass * w, ghost.even);
-    }
+    const Four odd = of_followers(n, layer.odd_pull), even = of_followers(n, layer.even_pull);
+    donor.odd_mass = donor.mass + odd.back();
+    donor.even_mass = donor.mass + even.back();
+    Vector<dim> by;
     for (std::size_t i = 0; i < dim; ++i) {
-      donor.odd[i] /= donor.odd_mass;
-      donor.even[i] /= donor.even_mass;
+      layer.odd[n][i] = odd[i] / donor.odd_mass;
+      layer.even[n][i] = even[i] / donor.even_mass;
+      by[i] = layer.odd[n][i] + layer.even[n][i];
     }
-    Vector<dim> by = donor.odd;
-    add(by, 1.0, donor.even);
     change(donor, by, c);
   });
   each(layer.ghosts, [&](std::size_t n, std::size_t c) {
     const Ghost& ghost = layer.ghosts[n];
     if (!ghost.acts) return;
-    Vector<dim> by{};
-    add(by, -1.0, ghost.odd);
-    add(by, -1.0, ghost.even);
-    each_donor(ghost, [&](const Donor& donor, double w) {
-      add(by, -ghost.s * w, donor.odd);
-      add(by, w, donor.even);
-    });
+    const Row s(-ghost.s);
+    const Four sum = stored<Four>(of_donors(
+        ghost, [&](std::size_t j) { return fma(s, loaded(layer.odd[j]), loaded(layer.even[j])); }));
+    Vector<dim> by;
+    for (std::size_t i = 0; i < dim; ++i)
+      by[i] = ghost.per_borne * sum[i] - ghost.odd[i] - ghost.even[i];
     change(ghost, by, chunks(layer.donors.size()) + c);
   });
   WallEffect effect;

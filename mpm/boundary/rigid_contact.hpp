@@ -36,6 +36,7 @@
 
 #include "mpm/boundary/walls.hpp"
 #include "mpm/grid/grid.hpp"
+#include "mpm/grid/lanes.hpp"
 #include "mpm/scene/solid.hpp"
 
 namespace repose::mpm {
@@ -62,17 +63,19 @@ class RigidContact {
                   double hair) const;
 
  private:
+  /// A vector and, last, a number that is summed with the same weights: what ghosts and donors tell
+  /// each other, a row at a time.
+  struct alignas(Row) Four : std::array<double, Row::size> {};
   struct Donor {
     std::int32_t block, place;
     std::array<double, dim> velocity;  ///< of the surface
-    // of the step: m_j, v_j relative to the surface, m_j + Σ m_g w s², m_j + Σ m_g w, and the two
-    // corrections
+    // of the step: m_j, m_j + Σ m_g w s², m_j + Σ m_g w
     double mass, odd_mass, even_mass;
-    std::array<double, dim> relative, odd, even;
   };
-  /// A ghost that follows a donor: its k-th.
+  /// A ghost that follows a donor, with its weight.
   struct Follower {
-    std::int32_t ghost, k;
+    double weight;
+    std::int32_t ghost;
   };
   /// Of a ghost, all that follows from where the surface lies.
   struct Geometry {
@@ -104,6 +107,12 @@ class RigidContact {
   struct Layer {  ///< of one surface
     std::vector<Ghost> ghosts;
     std::vector<Donor> donors;
+    /// Of the step. Donors: v_j relative to the surface and 1; −Σ_g m_g w s δ and Σ_g m_g w δ over
+    /// their denominators. Zero where they bear no mass.
+    std::vector<Four> front, odd, even;
+    /// Of the step. Ghosts: −m_g s δ and m_g s², m_g δ and m_g, over Σ weight. Zero where they
+    /// part.
+    std::vector<Four> odd_pull, even_pull;
     /// Of one donor after the other, ghosts in their order; whose are the first's, the second's, …
     std::vector<Follower> followers;
     std::vector<std::size_t> first_follower;

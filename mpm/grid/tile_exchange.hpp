@@ -121,19 +121,18 @@ std::bitset<Shape<dim>::nodes> touched_nodes(const GridOf<dim>& grid, const Node
 }
 
 /// Own every node: sums what the tiles around put on it, always in the same order, into sums that
-/// lie on cache lines. Only the first `count` channels, the others stay as they are, and only of
-/// the blocks of points that are wanted.
-template <std::size_t channels, int dim, class Wanted>
+/// lie on cache lines. Only the first `count` channels, the others stay as they are.
+template <std::size_t channels, int dim>
 void add_tiles(const GridOf<dim>& grid, const NodeBlockOf<dim>& nb,
                const std::array<std::size_t, channels>& channel, NodeTotals<channels, dim>& sum,
-               std::size_t count, Wanted&& wanted) {
+               std::size_t count = channels) {
   using S = Shape<dim>;
   static_assert(S::margin[0] == Row::size && S::cells[0] == 2 * Row::size);
   std::array<const TileOf<dim>*, S::around> around{};
   std::array<const TilePart<dim>*, S::around> touched{};
   for (std::size_t k = 0; k < S::around; ++k) {
     const std::int32_t source = nb.point_block[k];
-    if (source < 0 || !wanted(grid.point_blocks[static_cast<std::size_t>(source)])) continue;
+    if (source < 0) continue;
     around[k] = &grid.tiles[static_cast<std::size_t>(source)];
     touched[k] = &grid.point_blocks[static_cast<std::size_t>(source)].touched;
   }
@@ -187,13 +186,6 @@ void add_tiles(const GridOf<dim>& grid, const NodeBlockOf<dim>& nb,
           });
     }
   }
-}
-
-template <std::size_t channels, int dim>
-void add_tiles(const GridOf<dim>& grid, const NodeBlockOf<dim>& nb,
-               const std::array<std::size_t, channels>& channel, NodeTotals<channels, dim>& sum,
-               std::size_t count = channels) {
-  add_tiles<channels>(grid, nb, channel, sum, count, [](const PointBlockOf<dim>&) { return true; });
 }
 
 /// Fills the rows of a tile's field that the points of its block touch from the node blocks around;
