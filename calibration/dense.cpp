@@ -35,6 +35,12 @@ VectorXd least_squares(const MatrixXd& A, const VectorXd& b) {
   return A.colPivHouseholderQr().solve(b);
 }
 
+MatrixXd left_inverse(const MatrixXd& A) {
+  const Eigen::HouseholderQR<MatrixXd> qr(A);
+  const MatrixXd Q = qr.householderQ() * MatrixXd::Identity(A.rows(), A.cols());
+  return qr.matrixQR().topRows(A.cols()).triangularView<Eigen::Upper>().solve(Q.transpose());
+}
+
 MatrixXd inverse(const MatrixXd& A) { return A.colPivHouseholderQr().inverse(); }
 
 }  // namespace repose::calibration

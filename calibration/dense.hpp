@@ -18,6 +18,10 @@ SingularValues singular_values(const Eigen::MatrixXd& A);
 /// The x of min ‖A x − b‖, by QR with column pivoting.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
+/// (AᵀA)⁻¹Aᵀ = R⁻¹Qᵀ of a matrix whose columns are independent, by QR without pivoting: its rows
+/// give the x of min ‖A x − b‖ for any b.
+Eigen::MatrixXd left_inverse(const Eigen::MatrixXd& A);
+
 /// Of a square matrix that has one.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 

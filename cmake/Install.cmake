@@ -133,4 +133,4 @@ install(FILES ${PROJECT_BINARY_DIR}/generated/reposeConfig.cmake
 install(FILES NOTICE CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY data/experiments data/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/repose)
+install(DIRECTORY data/experiments data/scenes data/sensitivity DESTINATION ${CMAKE_INSTALL_DATADIR}/repose)

@@ -8,6 +8,7 @@
 #include "input/history_table.hpp"
 #include "input/read_initial.hpp"
 #include "input/read_keys.hpp"
+#include "input/read_sensitivity.hpp"
 #include "input/read_sweep.hpp"
 #include "input/test_keys.hpp"
 #include "pointdriver/path/history.hpp"
@@ -369,6 +370,7 @@ std::vector<KeyInfo> point_test_infos() {
     keys.table({"integration", "-", "how the path is integrated"},
                [&](Keys& below) { integration_keys(below, settings); });
     sweep_keys(keys);
+    sensitivity_keys(keys);
     std::vector<double> secants_at;
     keys.table({"report", "-", "figures for summary.json beside the usual ones"},
                [&](Keys& below) { report_keys(below, secants_at); });
@@ -379,7 +381,8 @@ PointTestFile read_point_test(InputFile& file) {
   PointTestFile result;
   result.name = std::filesystem::path(file.name()).stem().string();
   TomlReader root(file);
-  root.expect("sweep");  // read_sweep.hpp
+  root.expect("sweep");        // read_sweep.hpp
+  root.expect("sensitivity");  // read_sensitivity.hpp
   result.law = read_law(root.table("law"));
   result.test.initial = read_initial_conditions(root.table("initial"));
   result.test.settings = read_settings(root.table("integration"));

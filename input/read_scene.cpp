@@ -591,8 +591,9 @@ SceneFile read_scene(InputFile& file) {
   SceneFile result;
   mpm::Scene& scene = result.scene;
   TomlReader root(file);
-  root.expect("chart");  // read_chart.hpp
-  root.expect("sweep");  // read_sweep.hpp
+  root.expect("chart");        // read_chart.hpp
+  root.expect("sweep");        // read_sweep.hpp
+  root.expect("sensitivity");  // read_sensitivity.hpp
   scene.name = default_name(file);
   ReadKeys keys(root);
   scene_keys(keys, result);

@@ -10,6 +10,7 @@
 #include "input/read_fit.hpp"
 #include "input/read_point_test.hpp"
 #include "input/read_scene.hpp"
+#include "input/read_sensitivity.hpp"
 #include "input/read_stability.hpp"
 #include "input/read_sweep.hpp"
 #include "input/write_keys.hpp"
@@ -28,6 +29,7 @@ std::vector<KeyInfo> scene_infos() {
     keys.table({"chart", "-", "what `repose chart mpm` varies"},
                [&](Keys& below) { chart_keys(below, chart); });
     sweep_keys(keys);
+    sensitivity_keys(keys);
   });
 }
 

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 84> outputs{"manifest.json",
+constexpr std::array<std::string_view, 88> outputs{"manifest.json",
                                                    "largest_depth.asc",
                                                    "largest_depth.prj",
                                                    "largest_depth.tif",
@@ -48,6 +48,10 @@ constexpr std::array<std::string_view, 84> outputs{"manifest.json",
                                                    "summary.json",
                                                    "checkpoint_previous.h5",
                                                    "sweep.csv",
+                                                   "samples.csv",
+                                                   "sensitivity.csv",
+                                                   "sensitivity.json",
+                                                   "sensitivity.svg",
                                                    "sweep.svg",
                                                    "curves.csv",
                                                    "finished.jsonl",

@@ -44,6 +44,7 @@ void bind_verbs(py::module_& module) {
   };
   bind("run_scene", &app::run_scene, "`repose run`: returns the exit code.");
   bind("run_test", &app::run_test, "`repose point`: returns the exit code.");
+  bind("run_sensitivity", &app::run_sensitivity, "`repose sensitivity`: returns the exit code.");
   bind(
       "run_fit",
       [](const std::string&, const input::InputFile& input, const app::CommonOptions& options) {

@@ -14,6 +14,7 @@
 #include "input/read_fit.hpp"
 #include "input/read_point_test.hpp"
 #include "input/read_scene.hpp"
+#include "input/read_sensitivity.hpp"
 #include "input/read_stability.hpp"
 #include "input/shipped_input.hpp"
 #include "io/atomic_file.hpp"
@@ -206,6 +207,11 @@ io::ExitCode check_file(const std::string& path, const CommonOptions& options, L
     if (const std::optional<input::ParameterSets> sweep = input::read_sweep(copy)) {
       copy.throw_if_bad();
       check_sweep(path, *sweep, kind == input::FileKind::scene, options);
+    }
+    if (const auto asked = input::read_sensitivity(copy)) {
+      copy.throw_if_bad();
+      if (!options.quiet)
+        fmt::print("  sensitivity  {} runs of {} inputs\n", asked->runs(), asked->inputs.size());
     }
   }
   switch (kind) {

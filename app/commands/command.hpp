@@ -96,6 +96,9 @@ io::ExitCode run_test(const std::string& from, const input::InputFile& given,
                       const CommonOptions& options);
 io::ExitCode run_scene(const std::string& from, const input::InputFile& given,
                        const CommonOptions& options);
+/// Of either kind of input, with a [sensitivity].
+io::ExitCode run_sensitivity(const std::string& from, const input::InputFile& given,
+                             const CommonOptions& options);
 /// What `repose fit` takes beyond the common options.
 struct FitArguments {
   int starts_from = 0;
@@ -119,5 +122,6 @@ Command add_chart(CLI::App& root);
 Command add_stability(CLI::App& root);
 Command add_report(CLI::App& root);
 Command add_validate(CLI::App& root);
+Command add_sensitivity(CLI::App& root);
 
 }  // namespace repose::app

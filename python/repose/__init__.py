@@ -26,7 +26,7 @@ from .point_test import PointResult, PointTest, point
 from .python_law import Parameter, PythonLaw, register_law
 from .result import Result
 from .simulation import Nodes, Points, Simulation, estimate
-from .verbs import chart, run, sweep, validate
+from .verbs import chart, run, sensitivity, sweep, validate
 
 __version__ = version
 
@@ -56,6 +56,6 @@ __all__ = [
     "Columns", "FitResult", "InputError", "Law", "LawInfo", "Map", "Maps", "Nodes", "NumericalFailure",
     "Parameter", "PointResult", "PointTest", "Points", "PythonLaw", "Result", "Simulation",
     "batch_array", "chart", "cmake_dir", "estimate", "fit", "instruction_set", "json_schema", "keys", "laws",
-    "point", "register_law", "run", "shipped_cases", "shipped_scenes", "shipped_tests", "sweep",
-    "validate", "version",
+    "point", "register_law", "run", "sensitivity", "shipped_cases", "shipped_scenes", "shipped_tests",
+    "sweep", "validate", "version",
 ]

@@ -209,6 +209,9 @@ def run_fit(input: Input, source: str, output: str, threads: int, seed: int, res
 def run_scene(input: Input, source: str, output: str, threads: int, seed: int, resume: bool, quiet: bool, plot: bool) -> int:
     """`repose run`: returns the exit code."""
 
+def run_sensitivity(input: Input, source: str, output: str, threads: int, seed: int, resume: bool, quiet: bool, plot: bool) -> int:
+    """`repose sensitivity`: returns the exit code."""
+
 def run_test(input: Input, source: str, output: str, threads: int, seed: int, resume: bool, quiet: bool, plot: bool) -> int:
     """`repose point`: returns the exit code."""
 

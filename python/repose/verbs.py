@@ -1,4 +1,4 @@
-"""What the command does, with result folders: run, sweep, validate, chart."""
+"""What the command does, with result folders: run, sweep, sensitivity, validate, chart."""
 
 from __future__ import annotations
 
@@ -80,6 +80,31 @@ def sweep(source: Source, /, *, grid: Mapping | None = None, list: Iterable[Mapp
     folder = _folder(output, "sweep" if isinstance(source, Mapping) else Path(given.name).stem)
     verb = _core.run_test if given.has("test") else _core.run_scene
     return _ended(verb(given, given.name, folder, threads, 0, resume, quiet, plot), folder)
+
+
+def sensitivity(source: Source, /, asked: Mapping | None = None, *,
+                output: str | os.PathLike | None = None, resume: bool = False, threads: int = 0,
+                seed: int = 1, quiet: bool = False, plot: bool = True, **changes: Any) -> Result:
+    """Which inputs the results of a point test or a scene depend on, as `repose sensitivity` does.
+
+        sensitivity("weald_clay_undrained", {
+            "samples": 128, "output": "S_u_Pa",
+            "input": [{"key": "law.M", "lower": 0.9, "upper": 1.0},
+                      {"key": "initial.p", "mean": 207e3, "sd": 10e3}]})
+
+    asked: in place of the source's own [sensitivity]. The result has `table("sensitivity")`, a row
+    per input and output, `samples`, a row per run, and `summary["outputs"]`, sensitivity.json.
+    """
+    threads = arguments.whole("sensitivity: threads", threads)
+    seed = arguments.whole("sensitivity: seed", seed, below=2**64)
+    arguments.flags("sensitivity", resume=resume, quiet=quiet, plot=plot)
+    arguments.source("sensitivity: source", source)
+    replaced = {} if asked is None else \
+        {"sensitivity": dict(arguments.table("sensitivity: asked", asked))}
+    given = _either(source, changes, replaced)
+    folder = _folder(output, "sensitivity" if isinstance(source, Mapping) else Path(given.name).stem)
+    return _ended(_core.run_sensitivity(given, given.name, folder, threads, seed, resume, quiet, plot),
+                  folder)
 
 
 def _either(source: Source, changes: Mapping, replaced: Mapping) -> _core.Input:

@@ -95,7 +95,7 @@ Driven driven(const PointCase& one, std::size_t run, const CurveColumns& wanted)
 }  // namespace
 
 /// The log's complete lines, in the order of the runs; what is behind a broken one is not kept.
-void PointSweep::take_up(const io::ResultFolder& folder) {
+void PointSweep::take_up(const io::ResultFolder& folder, bool with_curves) {
   std::ifstream log(folder.file(log_name));
   const std::string curves = text_of(folder.file("curves.csv"));
   std::size_t at = std::min(curves.size(), curves.find('\n')) + 1;  // behind the header
@@ -121,20 +121,25 @@ void PointSweep::take_up(const io::ResultFolder& folder) {
                          entry->value("wall_s", 0.0),
                          entry->at("figures"),
                          entry->value("checksum", "")};
-    if (!are_there(figures.rows, figures.checksum)) break;
+    if (with_curves ? !are_there(figures.rows, figures.checksum)
+                    : figures.checksum != io::fingerprint_of(figures.figures.dump()))
+      break;
     finished_.push_back(std::move(figures));
   }
   kept_ = finished_.size();
 }
 
-io::ExitCode PointSweep::run(const io::ResultFolder& folder, int threads, bool resume) {
-  if (resume) take_up(folder);
+io::ExitCode PointSweep::run(const io::ResultFolder& folder, int threads, bool resume,
+                             bool with_curves) {
+  if (resume) take_up(folder, with_curves);
   const CurveColumns columns(cases_);
   const std::vector<std::string> names = columns.names();
   const std::filesystem::path file = folder.file("curves.csv");
-  io::RowWriter curves = kept_ > 0
-                             ? io::RowWriter::continued(file, names, static_cast<double>(kept_))
-                             : io::RowWriter::create(file, names);
+  std::optional<io::RowWriter> curves;
+  if (with_curves && kept_ > 0)
+    curves.emplace(io::RowWriter::continued(file, names, static_cast<double>(kept_)));
+  else if (with_curves)
+    curves.emplace(io::RowWriter::create(file, names));
   std::string log;
   for (std::size_t k = 0; k < kept_; ++k) log += log_line(k);
   folder.write_file(log_name, log, io::Outlives::kill);
@@ -151,8 +156,8 @@ io::ExitCode PointSweep::run(const io::ResultFolder& folder, int threads, bool r
       });
     });
     for (Driven& one : block) {
-      curves.rows(one.rows);
-      one.figures.checksum = io::fingerprint_of(one.rows);
+      if (curves) curves->rows(one.rows);
+      one.figures.checksum = io::fingerprint_of(curves ? one.rows : one.figures.figures.dump());
       finished_.push_back(std::move(one.figures));
       more << log_line(finished_.size() - 1);
     }

@@ -24,7 +24,7 @@ struct PointFigures {
   std::size_t rows = 0;
   double wall_s = 0.0;     ///< of driving
   io::Json figures;        ///< numbers and words under the names of summary.json
-  std::string checksum{};  ///< of its rows of curves.csv
+  std::string checksum{};  ///< of its rows of curves.csv, or of the figures where there is none
 };
 
 class PointSweep {
@@ -36,8 +36,10 @@ class PointSweep {
   /// Drives what is not done yet and leaves curves.csv (run, then the columns of curve.csv) and,
   /// while it goes on, finished.jsonl, by which it is taken up again with `resume`. Returns
   /// `interrupted` if it was (SIGINT, SIGTERM), otherwise `done`. threads: 0 for all cores; the
-  /// result does not depend on it. Errors: IoError.
-  io::ExitCode run(const io::ResultFolder& folder, int threads, bool resume);
+  /// result does not depend on it. with_curves: false leaves no curves.csv, of many runs whose
+  /// figures alone count. Errors: IoError.
+  io::ExitCode run(const io::ResultFolder& folder, int threads, bool resume,
+                   bool with_curves = true);
 
   /// sweep.csv: a row per run with the varied keys, status and figures.
   std::string table() const;
@@ -51,7 +53,7 @@ class PointSweep {
   const std::vector<PointFigures>& finished() const { return finished_; }
 
  private:
-  void take_up(const io::ResultFolder& folder);
+  void take_up(const io::ResultFolder& folder, bool with_curves);
   std::string log_line(std::size_t run) const;
 
   std::vector<std::string> keys_;

@@ -1,9 +1,14 @@
 #include "study/run/scene_sweep.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <mutex>
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "io/interrupt.hpp"
 #include "io/number_text.hpp"
@@ -13,36 +18,78 @@ namespace repose::study {
 
 std::string SceneSweep::folder_name(std::size_t run) { return fmt::format("{:04}", run); }
 
+io::ExitCode SceneSweep::run_one(std::size_t k, const io::ResultFolder& folder, int threads,
+                                 std::uint64_t seed, bool resume) {
+  SceneCase& one = cases_[k];
+  if (!one.file) {
+    one.summary.status = "refused";
+    one.summary.reason = one.refusal;
+    return io::ExitCode::done;
+  }
+  RunRequest request;
+  request.file = *one.file;
+  request.input = one.input;
+  request.folder = folder.file("runs") / folder_name(k + 1);
+  request.threads = threads;
+  request.seed = seed;
+  request.quiet = true;
+  const io::ResultFolder there(request.folder);
+  if (resume && is_finished(there, one.input)) {
+    tidy_finished(there);
+  } else {
+    request.resume = resume && text_of(there.file("input.toml")) == one.input;
+    if (run_scene(request) == io::ExitCode::interrupted) return io::ExitCode::interrupted;
+  }
+  one.summary = read_summary(there.file("summary.json"));
+  return io::ExitCode::done;
+}
+
 io::ExitCode SceneSweep::run(const io::ResultFolder& folder, int threads, std::uint64_t seed,
                              bool resume, const std::function<void(std::size_t)>& told) {
   const io::InterruptGuard interrupt;
   for (std::size_t k = 0; k < cases_.size(); ++k) {
-    SceneCase& one = cases_[k];
-    if (interrupt.requested()) return io::ExitCode::interrupted;
-    if (!one.file) {
-      one.summary.status = "refused";
-      one.summary.reason = one.refusal;
-    } else {
-      RunRequest request;
-      request.file = *one.file;
-      request.input = one.input;
-      request.folder = folder.file("runs") / folder_name(k + 1);
-      request.threads = threads;
-      request.seed = seed;
-      request.quiet = true;
-      const io::ResultFolder there(request.folder);
-      if (resume && is_finished(there, one.input)) {
-        tidy_finished(there);
-      } else {
-        request.resume = resume && text_of(there.file("input.toml")) == one.input;
-        if (run_scene(request) == io::ExitCode::interrupted) return io::ExitCode::interrupted;
-      }
-      one.summary = read_summary(there.file("summary.json"));
-    }
+    if (interrupt.requested() ||
+        run_one(k, folder, threads, seed, resume) == io::ExitCode::interrupted)
+      return io::ExitCode::interrupted;
     folder.write_file("sweep.csv", table());
     told(k + 1);
   }
   return io::ExitCode::done;
+}
+
+io::ExitCode SceneSweep::run_side_by_side(const io::ResultFolder& folder, int threads,
+                                          std::uint64_t seed, bool resume,
+                                          const std::function<void(std::size_t)>& told) {
+  const io::InterruptGuard interrupt;
+  std::atomic<bool> stopped = false;
+  std::mutex telling;
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    // one run at a time for each thread: the default would hand a thread many in a row
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, cases_.size(), 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t k = range.begin(); k < range.end(); ++k) {
+            if (stopped || interrupt.requested()) {
+              stopped = true;
+              return;
+            }
+            try {
+              if (run_one(k, folder, 1, seed, resume) == io::ExitCode::interrupted) {
+                stopped = true;
+                return;
+              }
+            } catch (const InputError& error) {
+              cases_[k].summary.status = "refused";
+              cases_[k].summary.reason = error.what();
+            }
+            const std::lock_guard lock(telling);
+            told(k + 1);
+          }
+        },
+        tbb::simple_partitioner());
+  });
+  return stopped ? io::ExitCode::interrupted : io::ExitCode::done;
 }
 
 std::string SceneSweep::table() const {

@@ -28,9 +28,14 @@ class SceneSweep {
   /// Runs one after the other in folder/runs/0001, ..., and writes sweep.csv after each. With
   /// `resume` what came to its end from the same input is kept, and an interrupted run goes on.
   /// `told` is called after each with its number, from 1. Returns `interrupted` if it was.
-  /// Errors: IoError.
+  /// Errors: IoError; InputError of a scene that cannot be begun.
   io::ExitCode run(const io::ResultFolder& folder, int threads, std::uint64_t seed, bool resume,
                    const std::function<void(std::size_t)>& told);
+
+  /// The same runs side by side, each on one thread, for many small ones: no sweep.csv, `told` one
+  /// at a time but in any order, and what cannot be begun counts as refused.
+  io::ExitCode run_side_by_side(const io::ResultFolder& folder, int threads, std::uint64_t seed,
+                                bool resume, const std::function<void(std::size_t)>& told);
 
   /// sweep.csv: a row per run with the varied keys, status and the numbers of its summary.json.
   std::string table() const;
@@ -41,6 +46,9 @@ class SceneSweep {
   static std::string folder_name(std::size_t run);
 
  private:
+  io::ExitCode run_one(std::size_t k, const io::ResultFolder& folder, int threads,
+                       std::uint64_t seed, bool resume);
+
   std::vector<std::string> keys_;
   std::vector<SceneCase> cases_;
 };

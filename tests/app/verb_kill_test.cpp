@@ -96,6 +96,16 @@ const std::vector<VerbCase>& verbs() {
       {"point_sweep",
        {"point", "test.toml", "--set", "integration.tolerance=1e-12", "--set",
         "sweep.table=\"ocr.csv\"", "--threads", "1"}},
+      {"scene_sensitivity",
+       {"sensitivity", "scene.toml", "--set",
+        "sensitivity={method=\"morris\", samples=2, output=\"front_99_m\", "
+        "input=[{key=\"body[0].law.K\", lower=1e5, upper=4e5}]}",
+        "--threads", "1"}},
+      {"test_sensitivity",
+       {"sensitivity", "test.toml", "--set", "integration.tolerance=1e-12", "--set",
+        "sensitivity={samples=600, output=\"S_u_Pa\", "
+        "input=[{key=\"initial.ocr\", lower=1.0, upper=3.0}]}",
+        "--threads", "1"}},
       {"fit", {"fit", "fit.toml", "--threads", "1"}},
       {"chart_mpm",
        {"chart", "mpm", "scene.toml", "--transfers", "apic,flip", "--cells", "0.05,0.025",
@@ -354,7 +364,7 @@ TEST_P(VerbTest, AFolderThatTakesNothingIsSaid) {
 
 INSTANTIATE_TEST_SUITE_P(Every, VerbTest, testing::ValuesIn(verbs()),
                          [](const auto& one) { return one.param.name; });
-INSTANTIATE_TEST_SUITE_P(Sweeping, RunsTest, testing::Values(verbs()[0], verbs()[3]),
+INSTANTIATE_TEST_SUITE_P(Sweeping, RunsTest, testing::Values(verbs()[0], verbs()[5]),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace

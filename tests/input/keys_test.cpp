@@ -265,7 +265,8 @@ TEST(KeyTable, EverySceneKeyIsReadWrittenOutAndReadBack) {
     }
   }
   for (const auto& [name, info] : infos) {
-    if (name.starts_with("chart") || name.starts_with("sweep")) continue;
+    if (name.starts_with("chart") || name.starts_with("sweep") || name.starts_with("sensitivity"))
+      continue;
     const bool of_an_edge = name.starts_with("domain.") && name.find('.', 7) != std::string::npos;
     if (of_an_edge) continue;  // alike on all six
     EXPECT_TRUE(seen.contains(name)) << name << " is in none of the scenes of this test";
@@ -510,7 +511,8 @@ TEST(KeyTable, EveryKeyOfAPointTestIsReadAndAMistypedOneRefused) {
                        name.find("history") != std::string::npos || beside_history.contains(name) ||
                        name.find("_rate.") != std::string::npos ||
                        name.find("constraints.") != std::string::npos ||
-                       name.starts_with("sweep");  // sweep_test
+                       name.starts_with("sweep") ||      // sweep_test
+                       name.starts_with("sensitivity");  // sensitivity_command_test
     EXPECT_TRUE(alike || seen.contains(name)) << name << " is in none of the tests here";
   }
 }

@@ -88,6 +88,7 @@ class WrongTypes(unittest.TestCase):
         self.refused(r"run: resume must be True or False", repose.run, "flat_mu_i", resume="yes")
         self.refused(r"output must be a path", repose.run, "flat_mu_i", 3)
         self.refused(r"sweep: source must be", repose.sweep, 3)
+        self.refused(r"sensitivity: asked must be", repose.sensitivity, "flat_mu_i", 3)
         self.refused(r"sweep: list must be a list of dictionaries", repose.sweep, "flat_mu_i", list=3)
         self.refused(r"chart: what must be a path", repose.chart, 3)
         self.refused(r"validate: cases must be", repose.validate, 3)

@@ -321,6 +321,20 @@ class Folders(unittest.TestCase):
                                   scene={"end_time": 0.05})
             self.assertEqual([run.status for run in scenes.runs], ["done", "done"])
 
+    def test_sensitivities(self):
+        asked = {"samples": 40, "output": "S_u_Pa",
+                 "input": [{"key": "law.M", "lower": 0.9, "upper": 1.0},
+                           {"key": "initial.p", "mean": 207e3, "sd": 10e3}]}
+        with tempfile.TemporaryDirectory() as folder:
+            found = repose.sensitivity("weald_clay_undrained", asked, output=folder, quiet=True, plot=False)
+            self.assertEqual(found.kind, "sensitivity")
+            self.assertEqual(found.samples.rows, 40)
+            # S_u = M p ...: the shares are those of two products, which add up nearly to one
+            self.assertAlmostEqual(sum(found.table("sensitivity")["first"]), 1.0, delta=0.01)
+            self.assertGreater(found.summary["outputs"][0]["surrogate"]["q2"], 0.999)
+        with self.assertRaisesRegex(repose.InputError, "did you mean 'S_u_Pa'"):
+            repose.sensitivity("weald_clay_undrained", asked | {"output": "S_u"}, output=folder, quiet=True)
+
 
 if __name__ == "__main__":
     unittest.main()
