@@ -92,9 +92,9 @@ io::ExitCode misuse(const std::string& message, const CLI::App* verb) {
 }
 
 std::vector<Command> add_commands(CLI::App& root) {
-  return {add_run(root),    add_check(root),  add_models(root),     add_point(root),
-          add_chart(root),  add_fit(root),    add_stability(root),  add_validate(root),
-          add_report(root), add_schema(root), add_sensitivity(root)};
+  return {add_run(root),    add_check(root),  add_models(root),      add_point(root),
+          add_chart(root),  add_fit(root),    add_stability(root),   add_validate(root),
+          add_report(root), add_schema(root), add_sensitivity(root), add_propagate(root)};
 }
 
 io::ExitCode parse_and_run(std::span<const char* const> arguments) {

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 88> outputs{"manifest.json",
+constexpr std::array<std::string_view, 93> outputs{"manifest.json",
                                                    "largest_depth.asc",
                                                    "largest_depth.prj",
                                                    "largest_depth.tif",
@@ -53,6 +53,11 @@ constexpr std::array<std::string_view, 88> outputs{"manifest.json",
                                                    "sensitivity.json",
                                                    "sensitivity.svg",
                                                    "sweep.svg",
+                                                   "propagation.csv",
+                                                   "propagation.json",
+                                                   "propagation.svg",
+                                                   "draws.csv",
+                                                   "depth_bands.csv",
                                                    "curves.csv",
                                                    "finished.jsonl",
                                                    "checkpoint.h5",

@@ -123,5 +123,6 @@ Command add_stability(CLI::App& root);
 Command add_report(CLI::App& root);
 Command add_validate(CLI::App& root);
 Command add_sensitivity(CLI::App& root);
+Command add_propagate(CLI::App& root);
 
 }  // namespace repose::app

@@ -5,14 +5,11 @@
 #include "app/commands/sweep_folder.hpp"
 #include "input/file_kind.hpp"
 #include "input/read_sensitivity.hpp"
-#include "input/resolved_scene.hpp"
 #include "input/shipped_input.hpp"
 #include "report/picture/sensitivity_picture.hpp"
 
 namespace repose::app {
 namespace {
-
-using Reasons = std::vector<std::pair<std::size_t, std::string>>;
 
 /// From the runs to what they say.
 class SensitivityRun {
@@ -24,36 +21,18 @@ class SensitivityRun {
         options_(options) {}
 
   io::ExitCode of_tests(const input::InputFile& file) {
-    study::PointSweep sweep(plan_.sets.keys,
-                            study::cases_of<study::PointCase>(
-                                file, plan_.sets, "sensitivity",
-                                [](study::PointCase& one, input::InputFile& run, std::size_t) {
-                                  one.test = input::read_point_test(run);
-                                }));
+    study::PointSweep sweep(file, plan_.sets, "sensitivity");
     if (at_.is_kept()) return io::ExitCode::done;
     const io::ExitCode code = sweep.run(at_.folder(), options_.threads, at_.begin(), false);
-    Reasons reasons;
-    for (std::size_t k = 0; k < sweep.finished().size(); ++k)
-      if (sweep.finished()[k].status != "done")
-        reasons.emplace_back(k + 1, sweep.finished()[k].reason);
-    return end(sweep, code, reasons, [&] { return study::outputs_of(sweep, plan_); });
+    return end(sweep, code, [&] { return study::outputs_of(sweep, plan_); });
   }
 
   io::ExitCode of_scenes(const std::string& path, const input::InputFile& file) {
-    study::SceneSweep sweep(
-        plan_.sets.keys, study::cases_of<study::SceneCase>(
-                             file, plan_.sets, "sensitivity",
-                             [&](study::SceneCase& one, input::InputFile& run, std::size_t number) {
-                               const std::string name = study::SceneSweep::folder_name(number);
-                               one.file = input::read_scene(run);
-                               one.file->scene.name += "_" + name;
-                               one.file->scene.frame_interval = 0.0;
-                               one.input = input::resolved_input(
-                                   *one.file, fmt::format("Run {} of {}", name, path));
-                             }));
+    study::SceneSweep sweep(file, plan_.sets, "sensitivity", false);
     const auto usable = std::find_if(sweep.cases().begin(), sweep.cases().end(),
                                      [](const auto& one) { return one.file.has_value(); });
-    study::check_outputs(*usable->file, plan_);
+    study::require_outputs(plan_.asked.outputs, study::output_names(*usable->file),
+                           plan_.asked.output_place);
     if (at_.is_kept()) return io::ExitCode::done;
     at_.begin();
     std::size_t told = 0;
@@ -65,22 +44,17 @@ class SensitivityRun {
                      sweep.cases()[run - 1].summary.status);
           std::fflush(stdout);
         });
-    Reasons reasons;
-    for (std::size_t k = 0; k < sweep.cases().size(); ++k)
-      if (const study::RunSummary& s = sweep.cases()[k].summary;
-          !s.status.empty() && s.status != "done")
-        reasons.emplace_back(k + 1, s.reason);
-    return end(sweep, code, reasons,
-               [&] { return study::outputs_of(sweep, plan_, at_.folder().file("runs")); });
+    return end(sweep, code, [&] {
+      return study::outputs_of(sweep, plan_.asked.outputs, at_.folder().file("runs"));
+    });
   }
 
  private:
   template <class Sweep, class Outputs>
-  io::ExitCode end(const Sweep& sweep, io::ExitCode code, const Reasons& reasons,
-                   const Outputs& outputs) {
+  io::ExitCode end(const Sweep& sweep, io::ExitCode code, const Outputs& outputs) {
     at_.folder().write_file("samples.csv", sweep.table());
     if (code != io::ExitCode::done || sweep.count("done") == 0)
-      return at_.end(sweep, code, io::Json::object(), reasons, "samples.csv");
+      return at_.end(sweep.counts(), code, io::Json::object(), "samples.csv");
     const Eigen::MatrixXd values = outputs();
     const std::vector<study::OutputSensitivity> found = study::sensitivities(plan_, values);
     const io::Json json = study::sensitivity_json(plan_, found);
@@ -94,7 +68,7 @@ class SensitivityRun {
     if (!options_.quiet)
       for (const std::string& line : study::lost_words(plan_, values))
         fmt::print(stderr, "warning: {}\n", line);
-    return at_.end(sweep, code, {{"seed", plan_.seed}, {"outputs", json}}, reasons,
+    return at_.end(sweep.counts(), code, {{"seed", plan_.seed}, {"outputs", json}},
                    drawn ? "sensitivity.json, sensitivity.csv, samples.csv, sensitivity.svg"
                          : "sensitivity.json, sensitivity.csv, samples.csv");
   }

@@ -33,52 +33,6 @@ std::string parts_override(const std::string& parts) {
   return fmt::format("stability.parts=[{}]", list);
 }
 
-double least_share(const Json& cells) {
-  double least = 1.0;
-  for (const auto& [key, value] : cells.items())
-    least = std::min(least, value["share_converged"].get<double>());
-  return 100.0 * least;
-}
-
-std::string words_for(const study::ClayMaps& maps) {
-  const Json& steps = maps.figures["single_steps"];
-  return fmt::format(
-      "clay: single steps with a result, at least {:.4g} % exact, {:.4g} % linearised",
-      least_share(steps["exact"]), least_share(steps["linearised"]));
-}
-
-std::string words_for(const study::GrainMaps& maps) {
-  const study::ShearCellMaps& cell = maps.shear_cell;
-  return fmt::format(
-      "mu_i: criterion and growth agree on the sign in {} of {} points outside the margin "
-      "({:.4g} %); inside: {} of {}\n"
-      "mu_i: criterion and growth in a Material Point shear cell agree on the sign in {} of {} "
-      "points outside the margin; inside: {} of {}",
-      maps.agree_outside, maps.outside,
-      100.0 * maps.figures["boundary"]["share_outside_margin"].get<double>(), maps.agree_inside,
-      maps.points - maps.outside, cell.agree_outside, cell.outside, cell.agree_inside,
-      cell.points - cell.outside);
-}
-
-std::string words_for(const study::StepMaps& maps) {
-  return fmt::format(
-      "step: stable in the bulk up to Courant {:.3g} (cubic), isolated up to {:.3g} (fluid)",
-      maps.least_in_bulk, maps.least_alone);
-}
-
-std::string words_for(const study::ClayCollapse& run) {
-  const mpm::SeriesRow& last = run.history.rows.back();
-  return fmt::format("collapse: Cam-Clay {}, {} update: {} points without stress at {:.2f} s{}",
-                     run.key, run.linearised ? "linearised" : "exact", last.points_separated,
-                     last.time_s, run.history.failure.empty() ? "" : ", then failed");
-}
-
-std::string words_for(const study::GrainCollapse& run) {
-  const mpm::SeriesRow& last = run.history.rows.back();
-  return fmt::format("collapse: mu(I), {}: {:.2g} J/m at {:.2f} s after {} steps", run.key,
-                     last.kinetic_J_per_m, last.time_s, last.step);
-}
-
 /// The figures of parts that an interrupted run on the same input had done, and whose files are as
 /// they were written; null if there are none.
 Json parts_done(const io::ResultFolder& folder, const std::string& input) {
@@ -170,15 +124,15 @@ class Maps {
     switch (part) {
       case input::StabilityPart::clay: {
         const study::ClayMaps maps = study::map_clay(input_);
-        return leave(maps, report::clay_figures(maps), words_for(maps), files);
+        return leave(maps, report::clay_figures(maps), study::words_of(maps), files);
       }
       case input::StabilityPart::mu_i: {
         const study::GrainMaps maps = study::map_mu_i(input_);
-        return leave(maps, report::mu_i_figures(maps), words_for(maps), files);
+        return leave(maps, report::mu_i_figures(maps), study::words_of(maps), files);
       }
       case input::StabilityPart::step: {
         const study::StepMaps maps = study::map_step(input_);
-        return leave(maps, report::step_figures(maps), words_for(maps), files);
+        return leave(maps, report::step_figures(maps), study::words_of(maps), files);
       }
       case input::StabilityPart::mpm: {
         const study::FailureMaps maps = study::map_mpm(input_);
@@ -187,8 +141,8 @@ class Maps {
       }
       case input::StabilityPart::collapse: {
         const study::CollapseMaps maps = study::map_collapse(
-            input_, {[&](const study::ClayCollapse& run) { tell(words_for(run)); },
-                     [&](const study::GrainCollapse& run) { tell(words_for(run)); }});
+            input_, {[&](const study::ClayCollapse& run) { tell(study::words_of(run)); },
+                     [&](const study::GrainCollapse& run) { tell(study::words_of(run)); }});
         return leave(maps, report::collapse_figures(maps), "", files);
       }
     }

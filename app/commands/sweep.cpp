@@ -5,7 +5,6 @@
 #include "app/commands/sweep_folder.hpp"
 #include "input/read_point_test.hpp"
 #include "input/read_scene.hpp"
-#include "input/resolved_scene.hpp"
 #include "input/shipped_input.hpp"
 #include "report/picture/parameter_sweep_picture.hpp"
 #include "study/point/point_sweep.hpp"
@@ -16,40 +15,22 @@ namespace repose::app {
 io::ExitCode run_point_sweep(const std::string& path, const input::InputFile& file,
                              const input::ParameterSets& sets, const CommonOptions& options) {
   const SweepFolder at("sweep", "sweep.csv", path, file, options);
-  study::PointSweep sweep(
-      sets.keys,
-      study::cases_of<study::PointCase>(
-          file, sets, "sweep", [](study::PointCase& one, input::InputFile& run, std::size_t) {
-            one.test = input::read_point_test(run);
-          }));
+  study::PointSweep sweep(file, sets, "sweep");
   if (at.is_kept()) return io::ExitCode::done;
   const io::ExitCode code = sweep.run(at.folder(), options.threads, at.begin());
   at.folder().write_file("sweep.csv", sweep.table());
   const bool drawn = code == io::ExitCode::done && at.draw([&] {
     return report::point_sweep_picture(sweep, at.name(), at.folder().file("curves.csv"));
   });
-  std::vector<std::pair<std::size_t, std::string>> reasons;
-  for (std::size_t k = 0; k < sweep.finished().size(); ++k)
-    if (sweep.finished()[k].status != "done")
-      reasons.emplace_back(k + 1, sweep.finished()[k].reason);
-  return at.end(sweep, code,
-                io::Json{{"runs_kept", sweep.kept()}, {"driving_s", sweep.driving_s()}}, reasons,
+  return at.end(sweep.counts(), code,
+                io::Json{{"runs_kept", sweep.kept()}, {"driving_s", sweep.driving_s()}},
                 drawn ? "sweep.csv, curves.csv, sweep.svg" : "sweep.csv, curves.csv");
 }
 
 io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& file,
                              const input::ParameterSets& sets, const CommonOptions& options) {
   const SweepFolder at("sweep", "sweep.csv", path, file, options);
-  study::SceneSweep sweep(
-      sets.keys, study::cases_of<study::SceneCase>(
-                     file, sets, "sweep",
-                     [&](study::SceneCase& one, input::InputFile& run, std::size_t number) {
-                       const std::string name = study::SceneSweep::folder_name(number);
-                       one.file = input::read_scene(run);
-                       one.file->scene.name += "_" + name;
-                       one.input = input::resolved_input(*one.file,
-                                                         fmt::format("Run {} of {}", name, path));
-                     }));
+  study::SceneSweep sweep(file, sets, "sweep", true);
   if (at.is_kept()) return io::ExitCode::done;
   const auto tell = [&](std::size_t run) {
     const study::RunSummary& summary = sweep.cases()[run - 1].summary;
@@ -68,12 +49,7 @@ io::ExitCode run_scene_sweep(const std::string& path, const input::InputFile& fi
   const bool drawn = code == io::ExitCode::done && sweep.count("done") > 0 && at.draw([&] {
     return report::scene_sweep_picture(sweep, at.name(), at.folder().file("runs"));
   });
-  std::vector<std::pair<std::size_t, std::string>> reasons;
-  for (std::size_t k = 0; k < sweep.cases().size(); ++k)
-    if (const study::RunSummary& s = sweep.cases()[k].summary;
-        !s.status.empty() && s.status != "done")
-      reasons.emplace_back(k + 1, s.reason);
-  return at.end(sweep, code, io::Json::object(), reasons,
+  return at.end(sweep.counts(), code, io::Json::object(),
                 drawn ? "sweep.csv, sweep.svg, runs/" : "sweep.csv, runs/");
 }
 

@@ -23,9 +23,10 @@ namespace repose::app {
 class SweepFolder {
  public:
   /// kind: "sweep" or "sensitivity", as summary.json has it and the picture is called. table: where
-  /// what is wrong with each run stands.
+  /// what is wrong with each run stands. further: what else the runs depend on, one line.
   SweepFolder(std::string kind, std::string table, const std::string& path,
-              const input::InputFile& file, const CommonOptions& options)
+              const input::InputFile& file, const CommonOptions& options,
+              const std::string& further = "")
       : kind_(std::move(kind)),
         table_(std::move(table)),
         options_(options),
@@ -34,9 +35,10 @@ class SweepFolder {
         folder_(options.output.empty() ? io::ResultFolder::default_path(name_)
                                        : std::filesystem::path(options.output)),
         claim_(folder_),
-        input_(study::sweep_text(
-            file, fmt::format("The input of this {}, by repose {}.\n# {}", kind_,
-                              input::program_identity(), origin_line(path, options)))) {}
+        input_(study::sweep_text(file,
+                                 fmt::format("The input of this {}, by repose {}.\n# {}{}", kind_,
+                                             input::program_identity(), origin_line(path, options),
+                                             further.empty() ? "" : "\n# " + further))) {}
 
   const io::ResultFolder& folder() const { return folder_; }
   const std::string& name() const { return name_; }
@@ -71,25 +73,20 @@ class SweepFolder {
     }
     return false;
   }
-  /// Writes summary.json, tells the outcome, and returns the exit code. reasons: of the runs that
-  /// are not done, by their number.
-  template <class Sweep>
-  io::ExitCode end(const Sweep& sweep, io::ExitCode code, io::Json further,
-                   const std::vector<std::pair<std::size_t, std::string>>& reasons,
+  /// Writes summary.json, tells the outcome, and returns the exit code.
+  io::ExitCode end(const study::SweepCounts& counts, io::ExitCode code, io::Json further,
                    const std::string& files) const {
     const bool interrupted = code == io::ExitCode::interrupted;
-    const std::size_t done = sweep.count("done"), failed = sweep.count("failed"),
-                      refused = sweep.count("refused"), runs = sweep.cases().size();
     const study::Usage after = study::usage();
     io::Json summary{{"repose", version_string},
                      {"instruction_set", std::string(instruction_set())},
                      {"kind", kind_},
                      {"name", name_},
                      {"status", interrupted ? "interrupted" : "done"},
-                     {"runs", runs},
-                     {"runs_done", done},
-                     {"runs_failed", failed},
-                     {"runs_refused", refused},
+                     {"runs", counts.runs},
+                     {"runs_done", counts.done},
+                     {"runs_failed", counts.failed},
+                     {"runs_refused", counts.refused},
                      {"wall_s", after.wall_s - before_.wall_s},
                      {"cpu_s", after.cpu_s - before_.cpu_s}};
     summary.update(further);
@@ -101,23 +98,24 @@ class SweepFolder {
     if (options_.json) {
       fmt::print("{}\n", summary.dump());
     } else if (!options_.quiet) {
-      fmt::print("{}: {} runs in {:.3g} s{}{}; {}\n", folder_.path().string(),
-                 done + failed + refused, after.wall_s - before_.wall_s,
-                 failed > 0 ? fmt::format(", {} failed", failed) : "",
-                 refused > 0 ? fmt::format(", {} refused", refused) : "", files);
-      if (!reasons.empty())
-        fmt::print(stderr, "warning: run {}: {}\n", reasons.front().first, reasons.front().second);
-      if (reasons.size() > 1)
+      fmt::print("{}: {} runs in {:.3g} s{}{}; {}\n", folder_.path().string(), counts.ended(),
+                 after.wall_s - before_.wall_s,
+                 counts.failed > 0 ? fmt::format(", {} failed", counts.failed) : "",
+                 counts.refused > 0 ? fmt::format(", {} refused", counts.refused) : "", files);
+      if (!counts.reasons.empty())
+        fmt::print(stderr, "warning: {}: {}\n", counts.reasons.front().first,
+                   counts.reasons.front().second);
+      if (counts.reasons.size() > 1)
         fmt::print(stderr, "warning: {} further runs are not done; {} says why\n",
-                   reasons.size() - 1, table_);
+                   counts.reasons.size() - 1, table_);
     }
     if (interrupted) {
       fmt::print(stderr,
                  "interrupted after {} of {} runs; the same command with --resume continues\n",
-                 done + failed + refused, runs);
+                 counts.ended(), counts.runs);
       return code;
     }
-    return done == 0 ? io::ExitCode::numerical_failure : io::ExitCode::done;
+    return counts.done == 0 ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
  private:

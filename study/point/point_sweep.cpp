@@ -95,6 +95,14 @@ Driven driven(const PointCase& one, std::size_t run, const CurveColumns& wanted)
 }  // namespace
 
 /// The log's complete lines, in the order of the runs; what is behind a broken one is not kept.
+PointSweep::PointSweep(const input::InputFile& file, const input::ParameterSets& sets,
+                       std::string_view table)
+    : keys_(sets.keys),
+      cases_(cases_of<PointCase>(file, sets, table,
+                                 [](PointCase& one, input::InputFile& run, std::size_t) {
+                                   one.test = input::read_point_test(run);
+                                 })) {}
+
 void PointSweep::take_up(const io::ResultFolder& folder, bool with_curves) {
   std::ifstream log(folder.file(log_name));
   const std::string curves = text_of(folder.file("curves.csv"));
@@ -207,6 +215,16 @@ std::size_t PointSweep::count(std::string_view status) const {
   return static_cast<std::size_t>(
       std::count_if(finished_.begin(), finished_.end(),
                     [&](const PointFigures& one) { return one.status == status; }));
+}
+
+SweepCounts PointSweep::counts() const {
+  SweepCounts counts;
+  for (std::size_t k = 0; k < cases_.size(); ++k) {
+    const bool ended = k < finished_.size();
+    counts.add(fmt::format("run {}", k + 1), ended ? finished_[k].status : "",
+               ended ? finished_[k].reason : "");
+  }
+  return counts;
 }
 
 double PointSweep::driving_s() const {

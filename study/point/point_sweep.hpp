@@ -7,6 +7,7 @@
 #include "io/exit_code.hpp"
 #include "io/result_folder.hpp"
 #include "study/point/test_result.hpp"
+#include "study/run/sweep_cases.hpp"
 
 namespace repose::study {
 
@@ -29,9 +30,9 @@ struct PointFigures {
 
 class PointSweep {
  public:
-  PointSweep(std::vector<std::string> keys, std::vector<PointCase> cases)
-      : keys_(std::move(keys)),
-        cases_(std::move(cases)) {}
+  /// All tests, read from the file. table: what asks for them, "sweep".
+  PointSweep(const input::InputFile& file, const input::ParameterSets& sets,
+             std::string_view table);
 
   /// Drives what is not done yet and leaves curves.csv (run, then the columns of curve.csv) and,
   /// while it goes on, finished.jsonl, by which it is taken up again with `resume`. Returns
@@ -47,6 +48,7 @@ class PointSweep {
   std::size_t runs() const { return cases_.size(); }
   std::size_t kept() const { return kept_; }  ///< were there already
   std::size_t count(std::string_view status) const;
+  SweepCounts counts() const;
   double driving_s() const;  ///< spent in the integrators, over all threads
   const std::vector<std::string>& keys() const { return keys_; }
   const std::vector<PointCase>& cases() const { return cases_; }

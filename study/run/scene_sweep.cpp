@@ -10,11 +10,26 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "input/resolved_scene.hpp"
 #include "io/interrupt.hpp"
 #include "io/number_text.hpp"
 #include "io/result_folder.hpp"
 
 namespace repose::study {
+
+SceneSweep::SceneSweep(const input::InputFile& file, const input::ParameterSets& sets,
+                       std::string_view table, bool frames, const std::string& level)
+    : keys_(sets.keys),
+      level_(level.empty() ? "" : level + " "),
+      cases_(cases_of<SceneCase>(
+          file, sets, table, [&](SceneCase& one, input::InputFile& run, std::size_t number) {
+            const std::string name = folder_name(number);
+            one.file = input::read_scene(run);
+            one.file->scene.name += (level.empty() ? "_" : "_" + level + "_") + name;
+            if (!frames) one.file->scene.frame_interval = 0.0;
+            one.input = input::resolved_input(
+                *one.file, fmt::format("Run {} of {}{}", name, level_, file.name()));
+          })) {}
 
 std::string SceneSweep::folder_name(std::size_t run) { return fmt::format("{:04}", run); }
 
@@ -121,6 +136,49 @@ std::size_t SceneSweep::count(std::string_view status) const {
   return static_cast<std::size_t>(
       std::count_if(cases_.begin(), cases_.end(),
                     [&](const SceneCase& one) { return one.summary.status == status; }));
+}
+
+SweepCounts SceneSweep::counts() const {
+  SweepCounts counts;
+  for (std::size_t k = 0; k < cases_.size(); ++k)
+    counts.add(fmt::format("{}run {}", level_, k + 1), cases_[k].summary.status,
+               cases_[k].summary.reason);
+  return counts;
+}
+
+Eigen::MatrixXd outputs_of(const SceneSweep& sweep, const std::vector<std::string>& names,
+                           const std::filesystem::path& runs) {
+  using Eigen::Index;
+  Eigen::MatrixXd values = Eigen::MatrixXd::Constant(
+      static_cast<Index>(sweep.cases().size()), static_cast<Index>(names.size()), std::nan(""));
+  for (std::size_t run = 0; run < sweep.cases().size(); ++run) {
+    const RunSummary& summary = sweep.cases()[run].summary;
+    if (summary.status != "done") continue;
+    std::optional<NumberTable> series;
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      double& value = values(static_cast<Index>(run), static_cast<Index>(k));
+      if (const auto figure = summary.figures.find(names[k]); figure != summary.figures.end()) {
+        value = figure->second;
+        continue;
+      }
+      if (!series) series = read_numbers(runs / SceneSweep::folder_name(run + 1) / "series.csv");
+      if (const auto column = series->find(names[k]);
+          column != series->end() && !column->second.empty())
+        value = column->second.back();
+    }
+  }
+  return values;
+}
+
+std::set<std::string> output_names(const input::SceneFile& scene) {
+  const mpm::Simulation simulation(scene.scene, 1);
+  const std::vector<std::string> columns = series_columns(scene.scene);
+  std::set<std::string> names(columns.begin(), columns.end());
+  const io::Json summary =
+      io::Json::parse(summary_text({}, RunRecord(simulation), simulation, {1.0}));
+  for (const io::Json::Member& figure : summary.items())
+    if (figure.value.is_number()) names.insert(figure.key);
+  return names;
 }
 
 }  // namespace repose::study

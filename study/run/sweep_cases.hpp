@@ -3,8 +3,10 @@
 /// The runs of one file that differ in keys of it.
 
 #include <cmath>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -42,6 +44,23 @@ std::vector<Case> cases_of(const input::InputFile& file, const input::ParameterS
                            cases.front().refusal});
   return cases;
 }
+
+/// How runs ended.
+struct SweepCounts {
+  std::size_t runs = 0, done = 0, failed = 0, refused = 0;
+  /// Which are not done, and why: "run 7".
+  std::vector<std::pair<std::string, std::string>> reasons{};
+
+  std::size_t ended() const { return done + failed + refused; }
+  /// status: "" of one that has not been run.
+  void add(const std::string& run, std::string_view status, const std::string& reason);
+  SweepCounts& operator+=(const SweepCounts& other);
+};
+
+/// Complains of outputs that are none of the names that a run has. place: where they are asked for.
+/// Errors: BadInput, with the nearest name.
+void require_outputs(const std::vector<std::string>& outputs, const std::set<std::string>& names,
+                     const std::string& place);
 
 /// The file with what the command line changed, so that it makes the same runs again, under a
 /// comment.

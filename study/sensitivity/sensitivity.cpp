@@ -52,23 +52,6 @@ MatrixXd points_of(const input::SensitivityInput& asked, std::uint64_t seed) {
   return points;
 }
 
-/// Complains of the outputs that are none of the names.
-void require_names(const SensitivityPlan& plan, const std::set<std::string>& names) {
-  const std::vector<std::string_view> known(names.begin(), names.end());
-  std::vector<std::string> problems;
-  for (const std::string& output : plan.asked.outputs) {
-    if (names.contains(output)) continue;
-    std::string near = input::closest(output, known);
-    for (const std::string& name : names)  // without its unit
-      if (near.empty() && name.starts_with(output + "_")) near = name;
-    problems.push_back(
-        fmt::format("{}: no run has a figure '{}'{}", plan.asked.output_place, output,
-                    near.empty() ? fmt::format("; there are {}", fmt::join(known, ", "))
-                                 : fmt::format("; did you mean '{}'?", near)));
-  }
-  if (!problems.empty()) throw input::BadInput(std::move(problems));
-}
-
 std::vector<Orthonormal> families_of(const SensitivityPlan& plan) {
   std::vector<Orthonormal> list;
   for (const UncertainInput& one : plan.asked.inputs)
@@ -191,42 +174,8 @@ MatrixXd outputs_of(const PointSweep& sweep, const SensitivityPlan& plan) {
           figure != nullptr && figure->is_number())
         values(static_cast<Index>(run), static_cast<Index>(k)) = figure->get<double>();
   }
-  if (!names.empty()) require_names(plan, names);
+  if (!names.empty()) require_outputs(plan.asked.outputs, names, plan.asked.output_place);
   return values;
-}
-
-MatrixXd outputs_of(const SceneSweep& sweep, const SensitivityPlan& plan,
-                    const std::filesystem::path& runs) {
-  MatrixXd values = MatrixXd::Constant(plan.points.rows(),
-                                       static_cast<Index>(plan.asked.outputs.size()), std::nan(""));
-  for (std::size_t run = 0; run < sweep.cases().size(); ++run) {
-    const RunSummary& summary = sweep.cases()[run].summary;
-    if (summary.status != "done") continue;
-    std::optional<NumberTable> series;
-    for (std::size_t k = 0; k < plan.asked.outputs.size(); ++k) {
-      const std::string& name = plan.asked.outputs[k];
-      double& value = values(static_cast<Index>(run), static_cast<Index>(k));
-      if (const auto figure = summary.figures.find(name); figure != summary.figures.end()) {
-        value = figure->second;
-        continue;
-      }
-      if (!series) series = read_numbers(runs / SceneSweep::folder_name(run + 1) / "series.csv");
-      if (const auto column = series->find(name);
-          column != series->end() && !column->second.empty())
-        value = column->second.back();
-    }
-  }
-  return values;
-}
-
-void check_outputs(const input::SceneFile& scene, const SensitivityPlan& plan) {
-  const mpm::Simulation simulation(scene.scene, 1);
-  const std::vector<std::string> columns = series_columns(scene.scene);
-  std::set<std::string> names(columns.begin(), columns.end());
-  const Json summary = Json::parse(summary_text({}, RunRecord(simulation), simulation, {1.0}));
-  for (const Json::Member& figure : summary.items())
-    if (figure.value.is_number()) names.insert(figure.key);
-  require_names(plan, names);
 }
 
 std::vector<OutputSensitivity> sensitivities(const SensitivityPlan& plan, const MatrixXd& values) {

@@ -37,13 +37,6 @@ struct SensitivityPlan {
 /// The outputs of every run, a column each; NaN where a run has none. Errors: BadInput if no run
 /// that is done has such a figure, with the nearest name.
 Eigen::MatrixXd outputs_of(const PointSweep& sweep, const SensitivityPlan& plan);
-/// runs: where their folders lie. A name that summary.json does not have is that of a column of
-/// series.csv.
-Eigen::MatrixXd outputs_of(const SceneSweep& sweep, const SensitivityPlan& plan,
-                           const std::filesystem::path& runs);
-/// Complains of the same before anything is run. Errors: BadInput.
-void check_outputs(const input::SceneFile& scene, const SensitivityPlan& plan);
-
 /// What the runs say of one output.
 struct OutputSensitivity {
   std::string name;

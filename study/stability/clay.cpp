@@ -191,4 +191,22 @@ std::string name_of(ClayUpdate update) {
 
 ClayMaps map_clay(const input::StabilityInput& input) { return MapOfClay(input).run(); }
 
+namespace {
+
+double least_share(const io::Json& cells) {
+  double least = 1.0;
+  for (const auto& [key, value] : cells.items())
+    least = std::min(least, value["share_converged"].get<double>());
+  return 100.0 * least;
+}
+
+}  // namespace
+
+std::string words_of(const ClayMaps& maps) {
+  const io::Json& steps = maps.figures["single_steps"];
+  return fmt::format(
+      "clay: single steps with a result, at least {:.4g} % exact, {:.4g} % linearised",
+      least_share(steps["exact"]), least_share(steps["linearised"]));
+}
+
 }  // namespace repose::study

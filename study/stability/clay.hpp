@@ -40,4 +40,7 @@ struct ClayMaps : PartMaps {
 /// Tables clay_steps, clay_kappa, clay_paths. Throws InputError.
 ClayMaps map_clay(const input::StabilityInput& input);
 
+/// What is said of the maps, one line.
+std::string words_of(const ClayMaps& maps);
+
 }  // namespace repose::study

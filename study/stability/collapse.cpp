@@ -123,4 +123,17 @@ CollapseMaps map_collapse(const input::StabilityInput& input, const CollapseObse
   return Collapses(input, observer).run();
 }
 
+std::string words_of(const ClayCollapse& run) {
+  const mpm::SeriesRow& last = run.history.rows.back();
+  return fmt::format("collapse: Cam-Clay {}, {} update: {} points without stress at {:.2f} s{}",
+                     run.key, run.linearised ? "linearised" : "exact", last.points_separated,
+                     last.time_s, run.history.failure.empty() ? "" : ", then failed");
+}
+
+std::string words_of(const GrainCollapse& run) {
+  const mpm::SeriesRow& last = run.history.rows.back();
+  return fmt::format("collapse: mu(I), {}: {:.2g} J/m at {:.2f} s after {} steps", run.key,
+                     last.kinetic_J_per_m, last.time_s, last.step);
+}
+
 }  // namespace repose::study

@@ -37,4 +37,8 @@ struct CollapseObserver {
 /// Table collapse.
 CollapseMaps map_collapse(const input::StabilityInput& input, const CollapseObserver& observer);
 
+/// What is said of a run, one line.
+std::string words_of(const ClayCollapse& run);
+std::string words_of(const GrainCollapse& run);
+
 }  // namespace repose::study

@@ -258,4 +258,17 @@ class MapOfGrains {
 
 GrainMaps map_mu_i(const input::StabilityInput& input) { return MapOfGrains(input).run(); }
 
+std::string words_of(const GrainMaps& maps) {
+  const ShearCellMaps& cell = maps.shear_cell;
+  return fmt::format(
+      "mu_i: criterion and growth agree on the sign in {} of {} points outside the margin "
+      "({:.4g} %); inside: {} of {}\n"
+      "mu_i: criterion and growth in a Material Point shear cell agree on the sign in {} of {} "
+      "points outside the margin; inside: {} of {}",
+      maps.agree_outside, maps.outside,
+      100.0 * maps.figures["boundary"]["share_outside_margin"].get<double>(), maps.agree_inside,
+      maps.points - maps.outside, cell.agree_outside, cell.outside, cell.agree_inside,
+      cell.points - cell.outside);
+}
+
 }  // namespace repose::study

@@ -55,4 +55,7 @@ struct GrainMaps : PartMaps {
 /// Throws InputError.
 GrainMaps map_mu_i(const input::StabilityInput& input);
 
+/// What is said of the maps, a line each.
+std::string words_of(const GrainMaps& maps);
+
 }  // namespace repose::study

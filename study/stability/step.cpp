@@ -119,4 +119,10 @@ class MapOfSteps {
 
 StepMaps map_step(const input::StabilityInput& input) { return MapOfSteps(input).run(); }
 
+std::string words_of(const StepMaps& maps) {
+  return fmt::format(
+      "step: stable in the bulk up to Courant {:.3g} (cubic), isolated up to {:.3g} (fluid)",
+      maps.least_in_bulk, maps.least_alone);
+}
+
 }  // namespace repose::study

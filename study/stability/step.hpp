@@ -37,4 +37,7 @@ struct StepMaps : PartMaps {
 /// Table step_limits.
 StepMaps map_step(const input::StabilityInput& input);
 
+/// What is said of the maps, one line.
+std::string words_of(const StepMaps& maps);
+
 }  // namespace repose::study
