@@ -10,6 +10,8 @@
 
 #include <hdf5.h>
 
+#include "io/hdf5_lock.hpp"
+
 namespace repose::io {
 
 namespace {
@@ -29,6 +31,7 @@ class SilentErrors {
   ~SilentErrors() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
 
  private:
+  Hdf5Lock alone_;  // HDF5 has one thread at a time
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

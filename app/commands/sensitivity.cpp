@@ -16,7 +16,8 @@ class SensitivityRun {
  public:
   SensitivityRun(const std::string& path, const input::InputFile& file,
                  const study::SensitivityPlan& plan, const CommonOptions& options)
-      : at_("sensitivity", "samples.csv", path, file, options),
+      : at_("sensitivity", "samples.csv", fmt::format("{}, seed {}", path, options.seed), file,
+            options),
         plan_(plan),
         options_(options) {}
 

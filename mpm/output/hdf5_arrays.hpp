@@ -16,6 +16,7 @@
 #include <hdf5.h>
 
 #include "io/atomic_file.hpp"
+#include "io/hdf5_lock.hpp"
 #include "io/seal.hpp"
 
 namespace repose::mpm::hdf5 {
@@ -79,7 +80,7 @@ std::vector<T> read(hid_t file, const std::string& name) {
   return values;
 }
 
-/// Turns HDF5's own error printing off for a while.
+/// Turns HDF5's own error printing off for a while, in which no other thread calls it.
 class Quiet {
  public:
   Quiet() {
@@ -91,6 +92,7 @@ class Quiet {
   Quiet& operator=(const Quiet&) = delete;
 
  private:
+  io::Hdf5Lock alone_;
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };

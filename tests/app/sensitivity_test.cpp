@@ -124,6 +124,9 @@ TEST_F(SensitivityCommand, StrengthOfClay) {
   EXPECT_EQ(fs::last_write_time(folder_ / "four/samples.csv"), written) << "it was finished";
   ASSERT_EQ(run(file, "five", {"--seed", "2"}), 0);
   EXPECT_NE(read("one/samples.csv"), read("five/samples.csv"));
+  ASSERT_EQ(run(file, "four", {"--seed", "2", "--resume"}), 0);
+  EXPECT_EQ(read("four/samples.csv"), read("five/samples.csv"))
+      << "what was finished has another seed";
 }
 
 TEST_F(SensitivityCommand, DifferencesOfRunsAgreeWithThePolynomial) {
@@ -155,6 +158,13 @@ TEST_F(SensitivityCommand, RunsOfASceneAreTakenUpAgain) {
   EXPECT_EQ(outputs[1]["inputs"][0]["effects"].get<int>(), 3);
   ASSERT_EQ(run(file, "b", {"--threads", "1"}), 0);
   EXPECT_EQ(read("b/sensitivity.json"), whole);
+
+  // states that are saved side by side: HDF5 takes files in memory of one name for one
+  ASSERT_EQ(run(file, "states",
+                {"--threads", "4", "--set", "sensitivity.samples=20", "--set",
+                 "output.final_state=true"}),
+            0);
+  EXPECT_EQ(table_of(folder_ / "states/samples.csv").size(), 60u);
 
   // a kill after some of the runs
   for (const char* const name :
