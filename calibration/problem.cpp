@@ -21,6 +21,7 @@ Problem::Problem(const Problem& other)
     : space_(other.space_),
       targets_(other.targets_),
       balance_(other.balance_),
+      errors_(other.errors_),
       interrupted_(other.interrupted_) {
   lay_out();
   prior_weights_ = other.prior_weights_;
@@ -193,6 +194,18 @@ void Problem::evaluate(const VectorXd& z_given, bool with_J, Evaluation& out) co
     }
     out.r.tail(priors).array() *= prior_weights_.array().sqrt();
   }
+  whiten(out);
+}
+
+void Problem::whiten(Evaluation& out) const {
+  for (std::size_t k = 0; k < errors_.size(); ++k) {
+    const Block& b = blocks_[k];
+    const VectorXd alike = VectorXd::Ones(b.rows);
+    out.r.segment(b.first, b.rows) = innovations(errors_[k], out.r.segment(b.first, b.rows), alike);
+    if (out.J.size() > 0)
+      out.J.middleRows(b.first, b.rows) =
+          innovations(errors_[k], out.J.middleRows(b.first, b.rows), alike);
+  }
 }
 
 Misfit Problem::predict(std::size_t target, const VectorXd& z, Response* response) const {
@@ -238,6 +251,21 @@ Problem Problem::with_observed(const std::vector<MatrixXd>& observed) const {
 Problem Problem::with_space(ParameterSpace space) const {
   Problem copy(*this);
   copy.space_ = std::move(space);
+  return copy;
+}
+
+Problem Problem::with_held_out(const std::vector<bool>& held_out) const {
+  Problem copy(*this);
+  for (std::size_t k = 0; k < copy.targets_.size(); ++k) copy.targets_[k].held_out = held_out[k];
+  copy.lay_out();
+  copy.prior_weights_ = prior_weights_;
+  return copy;
+}
+
+Problem Problem::with_errors(std::vector<CurveError> errors) const {
+  Problem copy(*this);
+  copy.errors_ = std::move(errors);
+  copy.prior_weights_.setOnes();
   return copy;
 }
 

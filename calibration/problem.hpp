@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 
+#include "calibration/curve_error.hpp"
 #include "calibration/parameter_space.hpp"
 #include "calibration/target.hpp"
 
@@ -73,6 +74,12 @@ class Problem {
   Problem with_observed(const std::vector<Eigen::MatrixXd>& observed) const;
   /// A copy over another space of as many parameters: one held, other means of priors.
   Problem with_space(ParameterSpace space) const;
+  /// A copy in which these targets, one flag each, are held out and no others.
+  Problem with_held_out(const std::vector<bool>& held_out) const;
+  /// A copy whose residuals are the innovations of these errors, one per block and in units of r:
+  /// the least squares of it are the most likely parameters under such errors. Priors count by
+  /// their own standard deviations.
+  Problem with_errors(std::vector<CurveError> errors) const;
   /// A copy with other simulators, one per target.
   Problem with_simulators(std::vector<std::shared_ptr<const Simulator>> simulators) const;
 
@@ -94,6 +101,7 @@ class Problem {
                 Response& response) const;
   void target_residuals(std::size_t k, const Eigen::VectorXd& z, Eigen::Ref<Eigen::VectorXd> r,
                         bool count, bool* failed) const;
+  void whiten(Evaluation& out) const;
   void lay_out();
   void note_failure(std::string_view reason) const;
 
@@ -103,6 +111,7 @@ class Problem {
   std::vector<Block> blocks_;
   std::vector<Eigen::Index> first_;  ///< per target, −1 if held out
   std::vector<double> penalty_;      ///< per target
+  std::vector<CurveError> errors_;   ///< per block; empty: residuals are as they are
   Eigen::VectorXd prior_weights_;    ///< one per prior
   Eigen::Index size_ = 0, data_rows_ = 0;
   std::function<bool()> interrupted_;

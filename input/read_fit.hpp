@@ -19,6 +19,7 @@ struct TargetAbout {
   std::string data;       ///< the table as the fit file names it
   std::string x_label;    ///< "eps_a"
   std::string strain{};   ///< "logarithmic" or "engineering": of the data; empty for a scene
+  std::size_t table = 0;  ///< of which [[target]] it is, or a part
   bool triaxial = false;  ///< its last stage is one: q over p′ is worth a picture
 };
 

@@ -90,6 +90,7 @@ void TargetReader::read(TomlReader& table) {
     if (!data.note.empty()) out_.notes.push_back(data.note);
     read_part(table, given, data, parts.size() > 1);
   }
+  ++tables_;
 }
 
 /// A target, or those of its channels that share their rows.
@@ -99,6 +100,7 @@ void TargetReader::read_part(TomlReader& table, const TargetTable& given, const 
   TargetAbout about;
   const std::string& x = given.x;
   const std::vector<std::string>& y = data.channels;
+  about.table = tables_;
   about.data = given.data;
   about.x_label = x;
   target.name = given.name.empty() ? std::filesystem::path(given.data).stem().string() : given.name;

@@ -65,6 +65,7 @@ class TargetReader {
   std::vector<double> theta_;
   std::filesystem::path cache_;
   bool has_coarse_ = false;
+  std::size_t tables_ = 0;                                            ///< read so far
   point::StrainMeasure measure_ = point::StrainMeasure::logarithmic;  ///< of the present target
 };
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/chart.hpp"
 #include "input/program_identity.hpp"
 #include "input/read_point_test.hpp"
 #include "input/read_scene.hpp"
@@ -13,7 +14,6 @@
 #include "io/json.hpp"
 #include "models/instruction_set.hpp"
 #include "report/picture/parameter_sweep_picture.hpp"
-#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
 #include "study/point/point_sweep.hpp"
 #include "study/run/finished_result.hpp"
@@ -101,19 +101,8 @@ class SweepFolder {
     folder_.write_file("input.toml", input_);
     return goes_on;
   }
-  /// figure: makes it, only if it is wanted.
-  template <class Figure>
-  bool draw(const Figure& figure) const {
-    if (options_.no_plot) return false;
-    try {
-      figure().render_svg(folder_.file("sweep.svg"));
-      return true;
-    } catch (const report::PlotError& error) {
-      fmt::print(stderr, "warning: no sweep.svg: {}\n", error.what());
-    } catch (const std::logic_error& error) {
-      fmt::print(stderr, "warning: no sweep.svg: {}\n", error.what());
-    }
-    return false;
+  bool draw(const std::function<report::Figure()>& figure) const {
+    return !options_.no_plot && drawn(figure, folder_.file("sweep.svg"));
   }
   /// Writes summary.json, tells the outcome, and returns the exit code. reasons: of the runs that
   /// are not done, by their number.

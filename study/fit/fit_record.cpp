@@ -20,6 +20,22 @@ using calibration::StartResult;
 using Eigen::Index;
 using Json = io::Json;
 
+Json channel_json(const calibration::Target& target, const calibration::ChannelScore& s) {
+  Json c;
+  c["rows"] = s.rows;
+  c["rms"] = number(s.rms);
+  c["rms_over_range"] = number(s.relative_rms);
+  c["bias"] = number(s.bias);
+  c["chi2_per_row"] = number(s.chi2_per_row);
+  c["lag_correlation"] = number(s.lag_correlation);
+  c["systematic"] = s.systematic;
+  c["worst_at_x"] = number(target.x[s.worst_row]);
+  if (!target.held_out) c["objective"] = number(s.objective);
+  return c;
+}
+
+}  // namespace
+
 Json json_of(const Optimum& o) {
   Json out;
   out["z"] = list(o.z);
@@ -52,22 +68,6 @@ Optimum optimum_of(const Json& j) {
          t.at(3).is_null() ? std::numeric_limits<double>::infinity() : t.at(3).get<double>()});
   return o;
 }
-
-Json channel_json(const calibration::Target& target, const calibration::ChannelScore& s) {
-  Json c;
-  c["rows"] = s.rows;
-  c["rms"] = number(s.rms);
-  c["rms_over_range"] = number(s.relative_rms);
-  c["bias"] = number(s.bias);
-  c["chi2_per_row"] = number(s.chi2_per_row);
-  c["lag_correlation"] = number(s.lag_correlation);
-  c["systematic"] = s.systematic;
-  c["worst_at_x"] = number(target.x[s.worst_row]);
-  if (!target.held_out) c["objective"] = number(s.objective);
-  return c;
-}
-
-}  // namespace
 
 std::string quoted_words(const input::FitFile& file, const FitResult& result,
                          std::size_t parameter) {
@@ -446,6 +446,38 @@ std::vector<StartResult> read_starts(const std::vector<std::filesystem::path>& j
   for (const std::filesystem::path& path : journals)
     merge_into(all, read_one(path, file), path.string());
   return all;
+}
+
+void share_starts(input::FitFile& file, int from, int to) {
+  file.options.starts_from = from;
+  file.options.starts_to = to;
+  const int end = to < 0 ? file.options.starts : to;
+  if (from >= end || end > file.options.starts)
+    throw input::BadInput(
+        {fmt::format("--starts-from {} --starts-to {}: this fit has starts 0 to {}, and "
+                     "--starts-to is the first one that is left out",
+                     from, to, file.options.starts)});
+}
+
+std::vector<StartResult> begin_fit(const io::ResultFolder& folder, const input::FitFile& file,
+                                   const std::string& source, const std::vector<std::string>& merge,
+                                   bool resume) {
+  std::vector<std::filesystem::path> journals;
+  for (const std::string& dir : merge) {
+    journals.push_back(std::filesystem::path(dir) / starts_name);
+    if (!std::filesystem::exists(journals.back()))
+      throw io::IoError(journals.back(),
+                        "there is no journal of starts; give result folders of `repose fit`");
+  }
+  if (resume) journals.push_back(folder.file(starts_name));
+  std::vector<StartResult> done = read_starts(journals, file);
+  // the journal first: a kill in between must not lose the starts that it holds
+  folder.write_file(starts_name, starts_journal(file, done));
+  folder.remove_old_outputs();
+  folder.write_file("input.toml",
+                    fmt::format("# The input of this result, by repose {}.\n# From {}\n{}",
+                                version_string, source, file.resolved));
+  return done;
 }
 
 }  // namespace repose::study

@@ -57,6 +57,23 @@ std::string quoted_words(const input::FitFile& file, const FitResult& result,
 io::Json fit_summary(const input::FitFile& file, const std::string& status, const Usage& before,
                      const io::Json& report);
 
+/// An optimum as an entry of a journal, and back. Errors: Json::Error.
+io::Json json_of(const calibration::Optimum& optimum);
+calibration::Optimum optimum_of(const io::Json& json);
+
+/// Leaves a share of the starts to be run, all from `from` if `to` is −1. Errors: BadInput for a
+/// share that there is not.
+void share_starts(input::FitFile& file, int from, int to);
+
+/// Where a fit keeps its starts.
+inline constexpr std::string_view starts_name = "starts.jsonl";
+/// Opens the folder of a fit: the starts that these folders, and its own if it is resumed, hold go
+/// into its journal, older results go, and input.toml is written. Errors: BadInput, IoError.
+std::vector<calibration::StartResult> begin_fit(const io::ResultFolder& folder,
+                                                const input::FitFile& file,
+                                                const std::string& source,
+                                                const std::vector<std::string>& merge, bool resume);
+
 /// The journal of starts (journal.hpp): its head names the fit, then a line per finished start.
 std::string starts_journal(const input::FitFile& file,
                            const std::vector<calibration::StartResult>& starts);

@@ -267,7 +267,8 @@ TEST_F(UmatCommand, FailureInARunKeepsItsState) {
   }
 }
 
-/// The CPU time in seconds of each process whose command line holds a text (/proc/PID/stat, proc(5)).
+/// The CPU time in seconds of each process whose command line holds a text (/proc/PID/stat,
+/// proc(5)).
 std::vector<double> processes_with(const std::string& text) {
   std::vector<double> times;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -311,7 +312,8 @@ TEST_F(UmatCommand, AKilledReposeLeavesNoProcessBehind) {
     return false;
   };
   // A run starts its library more than once, and only one of these processes stays. It is in its
-  // loop when it has computed for longer than anything else it does: 0.2 s, of the 10 s it is given.
+  // loop when it has computed for longer than anything else it does: 0.2 s, of the 10 s it is
+  // given.
   EXPECT_TRUE(comes([](const std::vector<double>& cpu_s) {
     return std::any_of(cpu_s.begin(), cpu_s.end(), [](double s) { return s > 0.2; });
   })) << "the library never ran";
