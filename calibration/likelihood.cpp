@@ -70,7 +70,7 @@ LikelyErrors likely_errors(const VectorXd& r, double least, Errors errors) {
 
 std::vector<LikelyErrors> likely_errors(const Problem& problem, const VectorXd& z, Errors errors) {
   Evaluation e;
-  problem.evaluate(z, false, e);
+  problem.with_loss({}).evaluate(z, false, e);
   std::vector<LikelyErrors> list;
   for (const Block& b : problem.blocks()) {
     const Channel& channel = problem.targets()[b.target].channels[b.channel];

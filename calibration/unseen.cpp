@@ -78,7 +78,7 @@ UnseenTest score_unseen(const Problem& fitted, const VectorXd& z,
   const std::vector<LikelyErrors> errors = likely_errors(fitted, z, Errors::correlated);
   std::vector<bool> others(fitted.targets().size(), true);
   for (const std::size_t k : targets) others[k] = false;
-  const Problem unseen = fitted.with_held_out(others);
+  const Problem unseen = fitted.with_held_out(others).with_loss({});
   Evaluation e;
   unseen.evaluate(z, true, e);
   fitted.account(unseen);

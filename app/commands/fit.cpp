@@ -32,7 +32,7 @@ class FitRun {
         output_(options.output.empty() ? io::ResultFolder::default_path(name())
                                        : std::filesystem::path(options.output)),
         file_(input::read_fit(input, options.seed, output_ / "runs")),
-        problem_(calibration::ParameterSpace(file_.free), file_.targets, file_.balance),
+        problem_(calibration::ParameterSpace(file_.free), file_.targets, file_.balance, file_.loss),
         folder_(output_) {
     study::share_starts(file_, arguments.starts_from, arguments.starts_to);
     if (file_.posterior)
@@ -74,9 +74,7 @@ class FitRun {
     }
     for (std::size_t k = told; k < file_.notes.size() && !options_.quiet; ++k)
       fmt::print(stderr, "note: {}\n", file_.notes[k]);
-    folder_.write_file("fit.json", report.dump(2) + "\n");
-    folder_.write_file("fitted.toml", study::fitted_toml(file_, result_));
-    folder_.write_file("predictions.csv", study::predictions_csv(file_, problem_, result_));
+    study::write_fit(folder_, file_, problem_, result_, report);
     draw("fit.svg", [&] { return report::fit_picture(file_, problem_, result_); });
     draw("fit_diagnostics.svg", [&] { return report::fit_diagnostics(file_, result_); });
     tell(status, study::usage().wall_s - before.wall_s);
