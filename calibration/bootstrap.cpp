@@ -15,12 +15,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Innovations of one channel's residuals, of mean 0 and variance 1.
-VectorXd innovations(const ChannelNoise& c, const VectorXd& r) {
+/// Innovations of one channel's residuals, of mean 0 and of the variance that its errors have. With
+/// a robust loss that is their own, outliers included: the channel's noise is of their scores.
+VectorXd innovations(const ChannelNoise& c, const VectorXd& r, bool robust) {
   VectorXd white = whitened(r.segment(c.block.first, c.block.rows), c.rho);
   white.array() -= white.mean();
-  const double size = std::sqrt(white.squaredNorm() / static_cast<double>(white.size()));
-  if (size > 0.0) white /= size;
+  const auto rows = static_cast<double>(white.size());
+  const double size = std::sqrt(white.squaredNorm() / rows);
+  if (robust)
+    white *= std::sqrt(rows / c.freedom);
+  else if (size > 0.0)
+    white *= c.sd / size;
   return white;
 }
 
@@ -32,9 +37,10 @@ MatrixXd bootstrap(const Problem& problem, const Uncertainty& at, const VectorXd
   for (std::size_t k = 0; k < problem.targets().size(); ++k)
     fitted.push_back(problem.predict(k, z).simulated);
   Evaluation e;
-  problem.evaluate(z, false, e);
+  problem.with_loss({}).evaluate(z, false, e);
   std::vector<VectorXd> white;
-  for (const ChannelNoise& c : at.noise.channels) white.push_back(innovations(c, e.r));
+  for (const ChannelNoise& c : at.noise.channels)
+    white.push_back(innovations(c, e.r, problem.loss().robust()));
   const bool erring = simulator_error.size() == e.r.size();
   MatrixXd values(repeats, problem.parameters());
   tbb::parallel_for(0, repeats, [&](int b) {
@@ -55,7 +61,7 @@ MatrixXd bootstrap(const Problem& problem, const Uncertainty& at, const VectorXd
       VectorXd drawn(c.block.rows);
       for (Index i = 0; i < drawn.size(); ++i)
         drawn[i] = white[j][rows[static_cast<std::size_t>(i)]];
-      VectorXd error = c.sd * coloured(drawn, c.rho);
+      VectorXd error = coloured(drawn, c.rho);
       if (erring) error += erred * simulator_error.segment(c.block.first, c.block.rows);
       const Channel& channel = problem.targets()[of].channels[c.block.channel];
       for (Index i = 0; i < error.size(); ++i)

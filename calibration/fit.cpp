@@ -131,7 +131,7 @@ FitResult fit(const LawSpec& spec, const std::vector<FreeParameter>& free,
   options.local_evaluations = settings.max_evaluations;
   options.seed = settings.seed;
   std::vector<StartResult> starts = run_starts(problem, options);
-  settle_priors(problem, options, starts);
+  settle(problem, options, starts);
   const Optimum& best = best_of(starts).optimum;
   const Uncertainty at = uncertainty(problem, best.z);
   const std::vector<Recommendation> quoted = recommend(problem, at, {});

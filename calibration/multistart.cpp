@@ -128,8 +128,31 @@ std::vector<Cluster> clusters(const Problem& problem, const std::vector<StartRes
   return list;
 }
 
-void settle_priors(Problem& problem, const FitOptions& options, std::vector<StartResult>& starts) {
-  if (problem.prior_weights().size() == 0 || starts.empty() || options.local == "none") return;
+namespace {
+
+/// Scales of the channels whose noise is not declared, from their residuals at z.
+VectorXd settled_scales(const Problem& problem, const VectorXd& z) {
+  Evaluation e;
+  problem.with_loss({}).evaluate(z, false, e);
+  const double share =
+      static_cast<double>(problem.parameters()) / static_cast<double>(problem.data_rows());
+  VectorXd scales = problem.scales();
+  for (std::size_t k = 0; k < problem.blocks().size(); ++k) {
+    const Block& b = problem.blocks()[k];
+    if (problem.targets()[b.target].channels[b.channel].noise) continue;
+    constexpr double least = 1e-8;  // of the range: what the integrator leaves
+    const VectorXd r = e.r.segment(b.first, b.rows);
+    scales[static_cast<Eigen::Index>(k)] = settled_scale(
+        problem.loss(), r, share * static_cast<double>(b.rows), median_scale(r), least * b.factor);
+  }
+  return scales;
+}
+
+}  // namespace
+
+void settle(Problem& problem, const FitOptions& options, std::vector<StartResult>& starts) {
+  const bool priors = problem.prior_weights().size() > 0, robust = problem.loss().robust();
+  if ((!priors && !robust) || starts.empty() || options.local == "none") return;
   // by differences an optimiser that minds their noise is the user's choice
   const bool exact =
       std::all_of(problem.targets().begin(), problem.targets().end(),
@@ -148,13 +171,22 @@ void settle_priors(Problem& problem, const FitOptions& options, std::vector<Star
   auto best = starts.begin() + (&best_of(starts) - starts.data());
   StartResult leading = *best;
   for (int round = 0; round < 40 && !problem.interrupted(); ++round) {
-    const VectorXd before = problem.prior_weights().array().log();
-    VectorXd after = weighed_priors(problem, leading.optimum.z).array().log();
-    // a misfit that counts as noise in one round and not in the next goes half way
-    if (round > 10) after = 0.5 * (before + after);
-    problem.set_prior_weights(after.array().exp());
+    double change = 0.0;
+    const auto settled = [&](const VectorXd& from, const VectorXd& to) {
+      const VectorXd before = from.array().log();
+      VectorXd after = to.array().log();
+      // a misfit that counts as noise in one round and not in the next goes half way
+      if (round > 10) after = 0.5 * (before + after);
+      change = std::max(change, (after - before).cwiseAbs().maxCoeff());
+      return VectorXd(after.array().exp());
+    };
+    if (robust)
+      problem.set_scales(settled(problem.scales(), settled_scales(problem, leading.optimum.z)));
+    if (priors)
+      problem.set_prior_weights(
+          settled(problem.prior_weights(), weighed_priors(problem, leading.optimum.z)));
     refit(leading);
-    if ((after - before).cwiseAbs().maxCoeff() < 1e-6) break;
+    if (change < 1e-6) break;
   }
   tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t k) {
     if (starts[k].index != leading.index) refit(starts[k]);

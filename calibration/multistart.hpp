@@ -38,10 +38,11 @@ std::vector<StartResult> run_starts(const Problem& problem, const FitOptions& op
 /// The start with the lowest objective; ties go to the lower index.
 const StartResult& best_of(const std::vector<StartResult>& starts);
 
-/// Weighs the priors beside the noise that the best start's residuals show (weighed_priors), fits
-/// from every end again and repeats until the weights stay; `problem` keeps them. Without priors
-/// nothing happens. Objectives are then of the last weights.
-void settle_priors(Problem& problem, const FitOptions& options, std::vector<StartResult>& starts);
+/// Weighs the priors beside the noise that the best start's residuals show (weighed_priors), and
+/// with a robust loss takes the scales of channels without a declared noise from them
+/// (settled_scale); fits from every end again and repeats until both stay; `problem` keeps them.
+/// Without priors and such a loss nothing happens. Objectives are then of the last weights.
+void settle(Problem& problem, const FitOptions& options, std::vector<StartResult>& starts);
 
 /// Did the best start, or one that ended at the same optimum, end by itself? False where the limit
 /// of evaluations stopped them all.

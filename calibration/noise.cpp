@@ -232,7 +232,7 @@ Noise estimate_noise(const Problem& problem, const VectorXd& r, const MatrixXd& 
     c.freedom = std::max(rows - used, 0.5);
     own.push_back(seen(r, c, c));
     c.sd = std::sqrt(own.back().same / c.freedom);
-    if (problem.targets()[b.target].channels[b.channel].noise) {
+    if (problem.targets()[b.target].channels[b.channel].noise && !problem.loss().robust()) {
       // χ² of n rows exceeds n + 2.33 √(2n) in 1 % of cases
       const double chi2 = c.sd * c.sd / (b.factor * b.factor);
       c.beyond = chi2 > 1.0 + 2.33 * std::sqrt(2.0 / c.freedom);

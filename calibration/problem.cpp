@@ -4,16 +4,35 @@
 
 namespace repose::calibration {
 
-double Evaluation::objective() const { return 0.5 * r.squaredNorm(); }
+double Evaluation::objective() const { return 0.5 * r.squaredNorm() + beyond; }
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Problem::Problem(ParameterSpace space, std::vector<Target> targets, bool balance)
+namespace {
+
+/// The scale of a channel's good rows before any are seen, where its noise is not declared: a share
+/// of the range that leaves a search far from the optimum its way.
+constexpr double first_scale = 0.1;
+
+std::vector<std::vector<double>> first_scales(const std::vector<Target>& targets) {
+  std::vector<std::vector<double>> scales;
+  for (const Target& t : targets) {
+    scales.emplace_back();
+    for (const Channel& c : t.channels) scales.back().push_back(c.noise ? 1.0 : first_scale);
+  }
+  return scales;
+}
+
+}  // namespace
+
+Problem::Problem(ParameterSpace space, std::vector<Target> targets, bool balance, Loss loss)
     : space_(std::move(space)),
       targets_(std::move(targets)),
-      balance_(balance) {
+      balance_(balance),
+      loss_(loss),
+      scales_(first_scales(targets_)) {
   lay_out();
 }
 
@@ -21,6 +40,9 @@ Problem::Problem(const Problem& other)
     : space_(other.space_),
       targets_(other.targets_),
       balance_(other.balance_),
+      loss_(other.loss_),
+      scales_(other.scales_),
+      errors_(other.errors_),
       interrupted_(other.interrupted_) {
   lay_out();
   prior_weights_ = other.prior_weights_;
@@ -134,6 +156,7 @@ void Problem::evaluate(const VectorXd& z_given, bool with_J, Evaluation& out) co
   const Index n = parameters();
   out.r.setZero(size_);
   out.failed = false;
+  out.beyond = 0.0;
   if (with_J)
     out.J.setZero(size_, n);
   else
@@ -193,6 +216,96 @@ void Problem::evaluate(const VectorXd& z_given, bool with_J, Evaluation& out) co
     }
     out.r.tail(priors).array() *= prior_weights_.array().sqrt();
   }
+  whiten(out);
+  weigh(out);
+}
+
+void Problem::weigh(Evaluation& out) const {
+  if (!loss_.robust()) return;
+  const VectorXd scale = scales();
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Block& b = blocks_[k];
+    const double s = scale[static_cast<Index>(k)];
+    for (Index i = b.first; i < b.first + b.rows; ++i) {
+      const double u = out.r[i] / s, w = loss_.weight(u);
+      out.beyond += s * s * (loss_.cost(u) - 0.5 * w * u * u);
+      out.r[i] *= std::sqrt(w);
+      if (out.J.size() > 0) out.J.row(i) *= std::sqrt(w);
+    }
+  }
+}
+
+void Problem::linearise(const VectorXd& z, Evaluation& out, VectorXd& gain) const {
+  with_loss({}).evaluate(z, true, out);
+  gain = VectorXd::Ones(size_);
+  if (!loss_.robust()) return;
+  const VectorXd scale = scales();
+  const double share = static_cast<double>(parameters()) / static_cast<double>(data_rows_);
+  double K = 1.0;
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    const Block& b = blocks_[k];
+    const double s = scale[static_cast<Index>(k)], rows = static_cast<double>(b.rows);
+    double mean = 0.0, square = 0.0;
+    for (Index i = b.first; i < b.first + b.rows; ++i) {
+      const double slope = loss_.slope(out.r[i] / s);
+      mean += slope / rows;
+      square += slope * slope / rows;
+    }
+    mean = std::max(mean, 0.1);  // most rows are outliers: next to nothing is known
+    K += share * rows / static_cast<double>(data_rows_) *
+         std::max(0.0, square / (mean * mean) - 1.0);
+    for (Index i = b.first; i < b.first + b.rows; ++i) {
+      gain[i] = std::sqrt(mean);
+      out.r[i] = s * loss_.score(out.r[i] / s) / gain[i];
+      out.J.row(i) *= gain[i];
+    }
+  }
+  for (const Block& b : blocks_) out.r.segment(b.first, b.rows) *= K;
+}
+
+VectorXd Problem::scales() const {
+  VectorXd scales(static_cast<Index>(blocks_.size()));
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    scales[static_cast<Index>(k)] =
+        blocks_[k].factor * scales_[blocks_[k].target][blocks_[k].channel];
+  return scales;
+}
+
+void Problem::set_scales(const VectorXd& scales) {
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    scales_[blocks_[k].target][blocks_[k].channel] =
+        scales[static_cast<Index>(k)] / blocks_[k].factor;
+}
+
+double Problem::cost(const Block& block, const VectorXd& r) const {
+  if (!loss_.robust()) return 0.5 * r.squaredNorm();
+  const double s = block.factor * scales_[block.target][block.channel];
+  double sum = 0.0;
+  for (const double x : r) sum += s * s * loss_.cost(x / s);
+  return sum;
+}
+
+MatrixXd Problem::row_weights(std::size_t target, const VectorXd& z) const {
+  const Target& t = targets_[target];
+  const Misfit m = predict(target, z);
+  MatrixXd weights(t.rows(), static_cast<Index>(t.channels.size()));
+  for (Index c = 0; c < weights.cols(); ++c)
+    for (Index i = 0; i < t.rows(); ++i)
+      weights(i, c) =
+          loss_.weight(m.r[c * t.rows() + i] / scales_[target][static_cast<std::size_t>(c)]) /
+          loss_.weight(0.0);
+  return weights;
+}
+
+void Problem::whiten(Evaluation& out) const {
+  for (std::size_t k = 0; k < errors_.size(); ++k) {
+    const Block& b = blocks_[k];
+    const VectorXd alike = VectorXd::Ones(b.rows);
+    out.r.segment(b.first, b.rows) = innovations(errors_[k], out.r.segment(b.first, b.rows), alike);
+    if (out.J.size() > 0)
+      out.J.middleRows(b.first, b.rows) =
+          innovations(errors_[k], out.J.middleRows(b.first, b.rows), alike);
+  }
 }
 
 Misfit Problem::predict(std::size_t target, const VectorXd& z, Response* response) const {
@@ -238,6 +351,28 @@ Problem Problem::with_observed(const std::vector<MatrixXd>& observed) const {
 Problem Problem::with_space(ParameterSpace space) const {
   Problem copy(*this);
   copy.space_ = std::move(space);
+  return copy;
+}
+
+Problem Problem::with_held_out(const std::vector<bool>& held_out) const {
+  Problem copy(*this);
+  for (std::size_t k = 0; k < copy.targets_.size(); ++k) copy.targets_[k].held_out = held_out[k];
+  copy.lay_out();
+  copy.prior_weights_ = prior_weights_;
+  return copy;
+}
+
+Problem Problem::with_loss(Loss loss) const {
+  Problem copy(*this);
+  copy.loss_ = loss;
+  return copy;
+}
+
+Problem Problem::with_errors(std::vector<CurveError> errors) const {
+  Problem copy(*this);
+  copy.loss_ = {};
+  copy.errors_ = std::move(errors);
+  copy.prior_weights_.setOnes();
   return copy;
 }
 

@@ -22,7 +22,7 @@ class Walk {
         reach_(problem.space().reach(static_cast<std::size_t>(parameter))) {
     Evaluation e;
     problem.evaluate(z, false, e);
-    best_ = e.r.squaredNorm();
+    best_ = 2.0 * e.objective();
     const double error = at.released_error[i_];
     known_ = std::isfinite(error) && error > 0.0 && at.naive[i_] > 0.0;
     // the misfit's own scale, so that the profile's curvature at the optimum is the covariance's

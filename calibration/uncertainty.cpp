@@ -101,8 +101,7 @@ std::vector<ChannelScore> score(const Problem& problem, const VectorXd& z) {
                      (n >= 8 && s.lag_correlation > 0.5 && correlated(s.lag_correlation, n) &&
                       s.relative_rms > 1e-6);
       for (const Block& b : problem.blocks())
-        if (b.target == k && b.channel == c)
-          s.objective = 0.5 * b.factor * b.factor * r.squaredNorm();
+        if (b.target == k && b.channel == c) s.objective = problem.cost(b, b.factor * r);
       scores.push_back(s);
     }
   }
@@ -117,6 +116,7 @@ struct Linear {
   MatrixXd pseudo;        ///< J⁺ (coordinates × rows), without what the data do not determine
   MatrixXd U;             ///< rows × determined directions, orthonormal
   MatrixXd inverse;       ///< (JᵀJ)⁺ of all n coordinates
+  MatrixXd V;             ///< coordinates × determined directions, orthonormal
   VectorXd undetermined;  ///< per coordinate: 1 where the data say nothing
   VectorXd bounded;       ///< variance that the bounds leave along directions not determined
 };
@@ -130,6 +130,7 @@ Linear linearised(const MatrixXd& J, const std::vector<Index>& columns, double s
   l.inverse = MatrixXd::Zero(n, n);
   l.undetermined = l.bounded = VectorXd::Zero(n);
   l.U.resize(J.rows(), 0);
+  l.V.resize(n, 0);
   if (m == 0) return l;
   MatrixXd A(J.rows(), m);
   for (Index j = 0; j < m; ++j) A.col(j) = J.col(columns[static_cast<std::size_t>(j)]);
@@ -144,9 +145,11 @@ Linear linearised(const MatrixXd& J, const std::vector<Index>& columns, double s
   const MatrixXd& V = svd.V;
   const MatrixXd part = V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
   const MatrixXd pseudo = part * l.U.transpose(), inverse = part * part.transpose();
+  l.V = MatrixXd::Zero(n, rank);
   for (Index i = 0; i < m; ++i) {
     const Index a = columns[static_cast<std::size_t>(i)];
     l.pseudo.row(a) = pseudo.row(i);
+    l.V.row(a) = V.row(i).head(rank);
     for (Index j = 0; j < m; ++j)
       l.inverse(a, columns[static_cast<std::size_t>(j)]) = inverse(i, j);
     const double lost = 1.0 - std::min(1.0, V.row(i).head(rank).squaredNorm());
@@ -171,6 +174,7 @@ double rough_scatter(const Problem& problem, const VectorXd& r) {
 /// The optimum, its active bounds and its noise.
 struct Optimal {
   Evaluation e;
+  VectorXd gain;  ///< of each row (Problem::linearise)
   std::vector<int> at_bound;
   std::vector<Index> inside;
   double scatter = 1.0;
@@ -180,7 +184,7 @@ struct Optimal {
 
 Optimal optimal(const Problem& problem, const VectorXd& z) {
   Optimal o;
-  problem.evaluate(z, true, o.e);
+  problem.linearise(z, o.e, o.gain);
   // a bound that stops a parameter is not a measurement of it
   const VectorXd gradient = o.e.J.transpose() * o.e.r;
   for (Index i = 0; i < problem.parameters(); ++i) {
@@ -240,8 +244,7 @@ VectorXd weighed_priors(const Problem& problem, const VectorXd& z) {
   return weights;
 }
 
-Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
-                        const VectorXd& simulator_error) {
+Uncertainty uncertainty(const Problem& problem, const VectorXd& z, const VectorXd& own_error) {
   const ParameterSpace& space = problem.space();
   const Index n = problem.parameters();
   Uncertainty u;
@@ -264,11 +267,19 @@ Uncertainty uncertainty(const Problem& problem, const VectorXd& z,
   u.quantile = all_declared ? t_quantile(infinity) : t_quantile(static_cast<double>(u.freedom));
 
   const MatrixXd slopes = space.slopes(z);
-  const bool erring = simulator_error.size() == e.J.rows();
+  const bool erring = own_error.size() == e.J.rows();
+  const VectorXd simulator_error = erring ? VectorXd(own_error.cwiseProduct(o.gain)) : own_error;
   const VectorXd shift_z =
       erring ? VectorXd(-o.linear.pseudo * simulator_error) : VectorXd(VectorXd::Zero(n));
   u.shift = slopes * shift_z;
   MatrixXd cov = u.noise.variance(o.linear.pseudo.transpose());
+  const MatrixXd& V = o.linear.V;
+  u.information = MatrixXd::Zero(n, n);
+  for (const Index i : inside) u.information(i, i) = 12.0;
+  if (V.cols() > 0)
+    u.information +=
+        V * (inverse(V.transpose() * cov * V) - 12.0 * MatrixXd::Identity(V.cols(), V.cols())) *
+        V.transpose();
   cov.diagonal() += o.linear.bounded;
   MatrixXd cov_white = u.noise.white_variance(o.linear.pseudo.transpose());
   const MatrixXd value_cov = slopes * cov * slopes.transpose() + u.shift * u.shift.transpose();

@@ -54,7 +54,10 @@ struct Uncertainty {
   /// Standard error of each value with its own bound taken away: that of the profile's curvature.
   Eigen::VectorXd released_error;
   Eigen::VectorXd beyond_bound;  ///< how far outside the optimum then lies; 0 inside
-  Eigen::VectorXd naive;         ///< variance of the values if that of r were 1
+  /// Of z (n × n): the inverse of its covariance by the data along what these determine, and 12, of
+  /// what is even over its bounds, along the rest; 0 for coordinates at a bound.
+  Eigen::MatrixXd information;
+  Eigen::VectorXd naive;  ///< variance of the values if that of r were 1
   Noise noise;
   std::vector<ChannelScore> channels;
 };
@@ -66,7 +69,8 @@ struct Uncertainty {
 /// t of the degrees of freedom with which each variance is known, and end where the excess reaches
 /// critical_excess(). A direction along which the whole of the bounds changes the residuals by less
 /// than a tenth of their scatter is not determined: it widens no other interval than by what the
-/// bounds allow.
+/// bounds allow. With a robust loss r and J are those of Problem::linearise, and σ is theirs,
+/// declared or not: the covariance is that of Huber (1981, §7.6).
 /// simulator_error: a typical error of the simulator in r (empty: none), one standard deviation of
 /// unknown sign; what it moves the parameters by, J⁺ error, is added as s sᵀ to the covariance.
 Uncertainty uncertainty(const Problem& problem, const Eigen::VectorXd& z,

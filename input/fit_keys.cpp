@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::array<std::string_view, 2> scale_words{"linear", "log"};
 constexpr std::array<std::string_view, 2> noise_words{"estimated", "declared"};
+constexpr std::array<std::string_view, 3> residual_words{"normal", "huber", "student"};
+static_assert(static_cast<int>(calibration::Residuals::student) == 2);
 constexpr std::array<std::string_view, 3> compare_words{"rows", "interpolate", "distance"};
 static_assert(static_cast<int>(calibration::Compare::distance) == 2);
 static_assert(static_cast<int>(Scale::log) == 1);
@@ -31,11 +33,24 @@ KeyInfo open_table() {
 void nothing(TomlReader&) {}
 std::string no_text() { return {}; }
 
-/// What TargetReader hands on to other readers.
-void describe_target_tables(Keys& keys) {
+/// What TargetReader hands on to other readers, of targets and of candidates.
+void describe_test_tables(Keys& keys, std::string_view free_doc) {
   InitialConditions initial;
   TestTable test;
   point::Settings settings;
+  strain_key(keys, test.measure);
+  keys.table({"initial", "-", "the state at the start"},
+             [&](Keys& below) { initial_keys(below, initial); });
+  keys.table({"test", "-", "the path, as in a point test"},
+             [&](Keys& below) { test_keys(below, test); });
+  keys.table({"integration", "-", "how the path is integrated"},
+             [&](Keys& below) { integration_keys(below, settings); });
+  KeyInfo free = open_table();
+  keys.value({"free", "-", free_doc}, nothing, no_text, free);
+}
+
+/// The tables of a target.
+void describe_target_tables(Keys& keys) {
   NoiseParts parts;
   KeyInfo noise = open_table();
   KeyInfo either, number, table;
@@ -50,19 +65,10 @@ void describe_target_tables(Keys& keys) {
   keys.value({"noise", "-", "standard deviation of each channel's measurement"}, nothing, no_text,
              noise);
   keys.value({"weights", "-", "of single channels (1)"}, nothing, no_text, open_table());
-  strain_key(keys, test.measure);
-  keys.table({"initial", "-", "the state at the start"},
-             [&](Keys& below) { initial_keys(below, initial); });
-  keys.table({"test", "-", "the path, as in a point test"},
-             [&](Keys& below) { test_keys(below, test); });
-  keys.table({"integration", "-", "how the path is integrated"},
-             [&](Keys& below) { integration_keys(below, settings); });
-  KeyInfo free = open_table();
-  keys.value(
-      {"free", "-",
-       "initial conditions that are fitted too (p, ocr, v, K0, p_c0): bounds as in [fit], or "
-       "the name of a quantity of [fit.shared]"},
-      nothing, no_text, free);
+  describe_test_tables(
+      keys,
+      "initial conditions that are fitted too (p, ocr, v, K0, p_c0): bounds as in [fit], or "
+      "the name of a quantity of [fit.shared]");
 }
 
 }  // namespace
@@ -118,6 +124,27 @@ void target_keys(Keys& keys, TargetTable& target) {
   if (keys.describes()) describe_target_tables(keys);
 }
 
+void candidate_keys(Keys& keys, CandidateTable& candidate) {
+  keys.text({"name", "-", "for reports", {}, required}, candidate.name);
+  keys.text({"x", "-", "what the rows would be spaced over, as in curve.csv", {}, required},
+            candidate.x);
+  keys.text_list({"y", "-", "what would be measured, a column or a list of columns", {}, required},
+                 candidate.y);
+  keys.number({"from", "-", "x from which the rows go on, evenly"}, candidate.from);
+  keys.number({"to", "-", "x of the last row", {}, required}, candidate.to);
+  keys.integer({"rows", "-", "that would be measured"}, {1, 100000}, candidate.rows);
+  if (!keys.describes()) return;
+  KeyInfo noise = open_table(), number;
+  number.name = "CHANNEL";
+  number.range = positive;
+  number.doc = "standard deviation of the measurement";
+  noise.below = {number};
+  keys.value({"noise", "-", "standard deviation of every channel's measurement", {}, required},
+             nothing, no_text, noise);
+  describe_test_tables(keys,
+                       "initial conditions that are quantities of [fit.shared], by their names");
+}
+
 void noise_part_keys(Keys& keys, NoiseParts& parts) {
   keys.number({"absolute", "-", "standard deviation of the measurement", positive}, parts.absolute);
   keys.number({"relative", "-", "standard deviation as a share of the value", positive},
@@ -143,6 +170,18 @@ void solver_keys(Keys& keys, FitFile& fit) {
   keys.boolean({"balance", "-", "targets count alike, whatever their number of rows"}, fit.balance);
   keys.integer({"seed", "-", "of random numbers"}, {0, std::numeric_limits<std::int64_t>::max()},
                seed);
+  keys.choice(
+      {"residuals", "-", "what a residual costs: its square, or less where it is large (outliers)"},
+      residual_words, fit.loss.residuals);
+  const bool robust = fit.loss.robust() || keys.describes();
+  std::optional<double> tuning;
+  keys.number(Key{"tuning", "-",
+                  "of huber: residuals over their scale up to which it is the square (1.345); of "
+                  "student: degrees of freedom (4)",
+                  Range{0.0, 1e3}}
+                  .only_if(robust, "it belongs to residuals = \"huber\" or \"student\""),
+              tuning);
+  fit.loss.tuning = tuning.value_or(calibration::usual_tuning(fit.loss.residuals));
   o.global_evaluations = global;
   o.local_evaluations = local;
   fit.fine_evaluations = fine;
@@ -186,6 +225,7 @@ std::vector<KeyInfo> fit_infos() {
   FitFile fit = default_fit();
   EntryTable entry;
   TargetTable target;
+  CandidateTable candidate;
   KeyInfo free = open_table(), one, shared = open_table();
   one.name = "PARAMETER";
   one.kind = ValueKind::table;
@@ -202,6 +242,9 @@ std::vector<KeyInfo> fit_infos() {
     keys.tables(
         {"target", "-", "an experiment", {}, required}, 0, [](std::size_t) {},
         [&](Keys& below, std::size_t) { target_keys(below, target); });
+    keys.tables(
+        {"candidate", "-", "a test that could be made next: what it would teach"}, 0,
+        [](std::size_t) {}, [&](Keys& below, std::size_t) { candidate_keys(below, candidate); });
     keys.table({"solver", "-", "how the optimum is searched"},
                [&](Keys& below) { solver_keys(below, fit); });
     keys.table({"uncertainty", "-", "how sure the result is"},

@@ -40,6 +40,15 @@ struct TargetTable {
 };
 void target_keys(Keys& keys, TargetTable& target);
 
+/// [[candidate]], what concerns the rows that would be measured.
+struct CandidateTable {
+  std::string name, x;
+  std::vector<std::string> y;
+  double from = 0.0, to = 0.0;
+  int rows = 20;
+};
+void candidate_keys(Keys& keys, CandidateTable& candidate);
+
 /// Standard deviation of one channel: a number, or parts of it.
 struct NoiseParts {
   std::optional<double> absolute, relative;

@@ -28,6 +28,9 @@ void read_tables(InputFile& file, std::uint64_t seed, const std::filesystem::pat
   read_solver(root.table("solver"), seed, out);
   read_uncertainty(root.table("uncertainty"), out);
   std::vector<TomlReader> targets = root.tables("target", "an experiment");
+  std::vector<TomlReader> candidates;
+  if (root.has("candidate"))
+    candidates = root.tables("candidate", "a test that could be made next");
   const bool posterior = root.has("posterior");
   TomlReader posterior_table = root.table("posterior");
   if (!file.ok()) {
@@ -35,6 +38,7 @@ void read_tables(InputFile& file, std::uint64_t seed, const std::filesystem::pat
     fit.expect_any();
     posterior_table.expect_any();
     for (TomlReader& t : targets) t.expect_any();
+    for (TomlReader& t : candidates) t.expect_any();
     file.throw_if_bad();
   }
   out.info = &find_law(out.law);
@@ -44,6 +48,7 @@ void read_tables(InputFile& file, std::uint64_t seed, const std::filesystem::pat
                       parameter_vector(out.info->name, out.info->parameters, out.law.values),
                       cache);
   for (TomlReader& t : targets) reader.read(t);
+  for (TomlReader& t : candidates) reader.read_candidate(t);
   file.throw_if_bad();
   if (posterior) read_posterior(std::move(posterior_table), out);
   if (!reader.has_coarse()) out.coarse.clear();
@@ -153,7 +158,7 @@ FitFile read_fit(const InputFile& given, std::uint64_t seed, const std::filesyst
     return std::move(text).str();
   };
   out.resolved = text_of(resolved);
-  resolved.erase("posterior");  // says nothing of a start
+  for (const char* key : {"posterior", "candidate"}) resolved.erase(key);  // say nothing of a start
   std::string key = text_of(resolved) + out.fingerprint +
                     fmt::format("seed {} {}", out.options.seed, program_identity());
   for (const calibration::Target& t : out.targets)

@@ -16,10 +16,12 @@ namespace repose::input {
 
 /// What the pictures need of a target beside its numbers.
 struct TargetAbout {
-  std::string data;       ///< the table as the fit file names it
-  std::string x_label;    ///< "eps_a"
-  std::string strain{};   ///< "logarithmic" or "engineering": of the data; empty for a scene
-  bool triaxial = false;  ///< its last stage is one: q over p′ is worth a picture
+  std::string data;          ///< the table as the fit file names it
+  std::string x_label;       ///< "eps_a"
+  std::string strain{};      ///< "logarithmic" or "engineering": of the data; empty for a scene
+  std::size_t table = 0;     ///< of which [[target]] it is, or a part
+  std::vector<int> lines{};  ///< of the table's rows in its file
+  bool triaxial = false;     ///< its last stage is one: q over p′ is worth a picture
 };
 
 struct FitFile {
@@ -32,9 +34,12 @@ struct FitFile {
   std::vector<calibration::Target> targets;
   /// The targets with their scenes' coarse settings, searched first; empty if none has any.
   std::vector<calibration::Target> coarse;
+  /// Tests that could be made next: their rows and noise, without data.
+  std::vector<calibration::Target> candidates;
   long fine_evaluations = 60;
   std::vector<TargetAbout> about;
   bool balance = true;
+  calibration::Loss loss;
   calibration::FitOptions options;
   bool profiles = true;
   int bootstrap = 0;  ///< repeats

@@ -169,7 +169,7 @@ void FitParameters::link_ratios() {
       keys.push_back(out_.law_key[i]);
     }
   if (sorted.empty()) file_.report("fit", "[fit] needs at least one free parameter");
-  for (auto* list : {&out_.targets, &out_.coarse})
+  for (auto* list : {&out_.targets, &out_.coarse, &out_.candidates})
     for (Target& t : *list)
       for (calibration::Binding& b : t.bindings)
         b.parameter = placed[static_cast<std::size_t>(b.parameter)];

@@ -60,6 +60,10 @@ void read_uncertainty(TomlReader table, FitFile& out) {
 }
 
 void read_posterior(TomlReader table, FitFile& out) {
+  if (out.loss.robust())
+    table.report("noise", fmt::format("{} takes the errors to be normal: leave out it, or "
+                                      "solver.residuals",
+                                      table.path()));
   out.posterior.emplace();
   ReadKeys keys(table);
   posterior_keys(keys, *out.posterior);

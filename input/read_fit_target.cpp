@@ -90,6 +90,7 @@ void TargetReader::read(TomlReader& table) {
     if (!data.note.empty()) out_.notes.push_back(data.note);
     read_part(table, given, data, parts.size() > 1);
   }
+  ++tables_;
 }
 
 /// A target, or those of its channels that share their rows.
@@ -99,7 +100,9 @@ void TargetReader::read_part(TomlReader& table, const TargetTable& given, const 
   TargetAbout about;
   const std::string& x = given.x;
   const std::vector<std::string>& y = data.channels;
+  about.table = tables_;
   about.data = given.data;
+  about.lines = data.lines;
   about.x_label = x;
   target.name = given.name.empty() ? std::filesystem::path(given.data).stem().string() : given.name;
   if (one_of_several) target.name += ": " + y.front();
@@ -116,17 +119,63 @@ void TargetReader::read_part(TomlReader& table, const TargetTable& given, const 
   target.x_name = x;
   target.x =
       Eigen::Map<const Eigen::VectorXd>(data.x.data(), static_cast<Eigen::Index>(data.x.size()));
-  target.inputs = theta_;
-  for (std::size_t i = 0; i < out_.free.size(); ++i)
-    if (!out_.law_key[i].empty())
-      target.bindings.push_back(
-          {point::parameter_index(out_.info->parameters, out_.law_key[i]), static_cast<int>(i)});
+  bind_law(target);
   if (scene) {
     read_scene_target(table, given, data, std::move(target), std::move(about));
     return;
   }
   read_point_target(table, data, {x_quantity, std::move(y_quantities), compare}, std::move(target),
                     std::move(about));
+}
+
+void TargetReader::bind_law(Target& target) const {
+  target.inputs = theta_;
+  for (std::size_t i = 0; i < out_.free.size(); ++i)
+    if (!out_.law_key[i].empty())
+      target.bindings.push_back(
+          {point::parameter_index(out_.info->parameters, out_.law_key[i]), static_cast<int>(i)});
+}
+
+/// A target without data: rows at even x, and what their noise would be.
+void TargetReader::read_candidate(TomlReader& table) {
+  CandidateTable given;
+  ReadKeys keys(table);
+  candidate_keys(keys, given);
+  Target target;
+  target.name = given.name;
+  target.x_name = given.x;
+  target.held_out = true;  // nothing of its own can be fitted
+  FitTable data;
+  data.channels = given.y;
+  for (int i = 1; i <= given.rows; ++i)
+    data.x.push_back(given.from + (given.to - given.from) * i / given.rows);
+  if (table.has("to") && given.to == given.from)
+    table.report("to",
+                 fmt::format("{} must differ from {}", table.path_of("to"), table.path_of("from")));
+  target.x =
+      Eigen::Map<const Eigen::VectorXd>(data.x.data(), static_cast<Eigen::Index>(data.x.size()));
+  const auto x = quantity(table, "x", given.x);
+  std::vector<Quantity> y;
+  TomlReader noise = table.table("noise");
+  for (const std::string& name : given.y) {
+    if (const auto q = quantity(table, "y", name)) y.push_back(*q);
+    calibration::Channel channel;
+    channel.name = name;
+    channel.observed = Eigen::VectorXd::Zero(target.x.size());
+    channel.noise =
+        noise.number({name, "-", "standard deviation of the measurement", positive, {}});
+    target.channels.push_back(std::move(channel));
+  }
+  bind_law(target);
+  const std::size_t before = out_.targets.size();
+  read_point_target(table, data, {x, std::move(y), calibration::Compare::rows}, std::move(target),
+                    {});
+  if (out_.targets.size() == before) return;
+  out_.candidates.push_back(std::move(out_.targets.back()));
+  out_.candidates.back().held_out = false;
+  out_.targets.pop_back();
+  out_.coarse.pop_back();
+  out_.about.pop_back();
 }
 
 /// A full simulation: series.csv's columns over time_s, or depth_m over x_m at the end.

@@ -27,6 +27,9 @@ class TargetReader {
   /// Appends the target; a broken one is reported and left out.
   void read(TomlReader& table);
 
+  /// Appends a test that could be made next (FitFile::candidates).
+  void read_candidate(TomlReader& table);
+
   /// Does a target have coarse settings of its own?
   bool has_coarse() const { return has_coarse_; }
 
@@ -38,6 +41,8 @@ class TargetReader {
     calibration::Compare rows;
   };
 
+  /// The law's free parameters as inputs of a target.
+  void bind_law(calibration::Target& target) const;
   void read_scene_target(TomlReader& table, const TargetTable& given, const FitTable& data,
                          calibration::Target target, TargetAbout about);
   // read_fit_point_target.cpp
@@ -65,6 +70,7 @@ class TargetReader {
   std::vector<double> theta_;
   std::filesystem::path cache_;
   bool has_coarse_ = false;
+  std::size_t tables_ = 0;                                            ///< read so far
   point::StrainMeasure measure_ = point::StrainMeasure::logarithmic;  ///< of the present target
 };
 

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // manifest.json and summary.json come first: they declare a result complete.
-constexpr std::array<std::string_view, 93> outputs{"manifest.json",
+constexpr std::array<std::string_view, 98> outputs{"manifest.json",
                                                    "largest_depth.asc",
                                                    "largest_depth.prj",
                                                    "largest_depth.tif",
@@ -116,6 +116,11 @@ constexpr std::array<std::string_view, 93> outputs{"manifest.json",
                                                    "estimate.csv",
                                                    "advised.toml",
                                                    "fit_diagnostics.svg",
+                                                   "comparison.json",
+                                                   "comparison.csv",
+                                                   "comparison.svg",
+                                                   "unseen.csv",
+                                                   "design.csv",
                                                    "posterior.json",
                                                    "posterior.csv",
                                                    "posterior_bands.csv",
@@ -230,7 +235,7 @@ void ResultFolder::remove_old_outputs() const {
 void ResultFolder::remove_old_parts() const {
   io::remove_old_parts(folder_, [](std::string_view name) {
     return name == "input.toml" || name == "starts.jsonl" || name == "chains.jsonl" ||
-           name == "report.html" ||
+           name == "left_out.jsonl" || name == "report.html" ||
            std::find(outputs.begin(), outputs.end(), name) != outputs.end();
   });
   io::remove_old_parts(frames(),

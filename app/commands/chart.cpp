@@ -139,6 +139,15 @@ bool drawn(const report::Figure& figure, const std::filesystem::path& file) {
   return false;
 }
 
+bool drawn(const std::function<report::Figure()>& figure, const std::filesystem::path& file) {
+  try {
+    return drawn(figure(), file);
+  } catch (const std::logic_error& error) {
+    fmt::print(stderr, "warning: no {}: {}\n", file.filename().string(), error.what());
+    return false;
+  }
+}
+
 Command add_chart(CLI::App& root) {
   Verb verb(root, "chart", "Speed against accuracy");
   verb.footer(

@@ -16,9 +16,10 @@ struct ChartEnd {
 /// Says so where a chart was kept; returns its code.
 io::ExitCode told(const ChartEnd& end, const CommonOptions& options);
 
-/// Draws a figure into a file; where it cannot be drawn (no gnuplot, nothing to draw) it warns and
-/// returns false. Errors: IoError.
+/// Draws a figure into a file; where it cannot be made or drawn (no gnuplot, nothing to draw) it
+/// warns and returns false: what it shows is in the tables. Errors: IoError.
 bool drawn(const report::Figure& figure, const std::filesystem::path& file);
+bool drawn(const std::function<report::Figure()>& figure, const std::filesystem::path& file);
 
 /// Work-precision of the point driver's integrators, one-step error maps and the convergence of the
 /// laws' tangents. `file` has a [chart] table or is empty; quick: few settings, coarse maps.

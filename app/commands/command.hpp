@@ -104,6 +104,7 @@ struct FitArguments {
   int starts_from = 0;
   int starts_to = -1;
   std::vector<std::string> merge;
+  bool compare = false;
   bool strict = false;
   bool posterior = false;  ///< also where the file has no [posterior]
   int chains_from = 0;

@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/command.hpp"
+#include "app/commands/chart.hpp"
 #include "app/commands/sweep.hpp"
 #include "input/file_kind.hpp"
 #include "input/shipped_input.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "report/picture/point_picture.hpp"
-#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
 #include "study/point/laboratory_record.hpp"
 #include "study/point/test_record.hpp"
@@ -59,10 +58,17 @@ class PointRun {
     const Json report =
         study::test_summary(file_, result_, input, after.cpu_s - before.cpu_s, options_.seed);
     write(folder, "summary.json", report.dump(2) + "\n");
-    const bool drawn = draw(folder);
+    const bool picture =
+        !options_.no_plot && !result_.curve.rows.empty() &&
+        drawn(
+            [&] {
+              return report::point_picture(file_, result_.theta, result_.curve,
+                                           fmt::format("{}", fmt::join(options_.sets, ", ")));
+            },
+            folder.file("curve.svg"));
     if (!options_.quiet)
       for (const std::string& note : file_.notes) fmt::print(stderr, "warning: {}\n", note);
-    tell(folder, report, drawn);
+    tell(folder, report, picture);
     return result_.failed() ? io::ExitCode::numerical_failure : io::ExitCode::done;
   }
 
@@ -71,23 +77,6 @@ class PointRun {
   static void write(const io::ResultFolder& folder, std::string_view name,
                     const std::string& content) {
     folder.write_file(name, content, io::Outlives::kill);
-  }
-
-  /// Whether there is one. A picture that cannot be drawn is a warning, not a failure: the figures
-  /// are in curve.csv.
-  bool draw(const io::ResultFolder& folder) const {
-    if (options_.no_plot || result_.curve.rows.empty()) return false;
-    try {
-      const std::string changes = fmt::format("{}", fmt::join(options_.sets, ", "));
-      report::point_picture(file_, result_.theta, result_.curve, changes)
-          .render_svg(folder.file("curve.svg"));
-      return true;
-    } catch (const report::PlotError& error) {
-      fmt::print(stderr, "warning: no curve.svg: {}\n", error.what());
-    } catch (const std::logic_error& error) {
-      fmt::print(stderr, "warning: no curve.svg: {}\n", error.what());
-    }
-    return false;
   }
 
   void tell(const io::ResultFolder& folder, const Json& report, bool drawn) const {

@@ -6,12 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/command.hpp"
+#include "app/commands/chart.hpp"
 #include "input/program_identity.hpp"
 #include "io/json.hpp"
 #include "io/result_folder.hpp"
 #include "models/instruction_set.hpp"
-#include "report/plot/gnuplot.hpp"
 #include "repose_version.hpp"
 #include "study/run/finished_result.hpp"
 #include "study/run/run_record.hpp"
@@ -60,18 +59,8 @@ class SweepFolder {
     return goes_on;
   }
   /// figure: makes it, only if it is wanted.
-  template <class Figure>
-  bool draw(const Figure& figure) const {
-    if (options_.no_plot) return false;
-    try {
-      figure().render_svg(folder_.file(kind_ + ".svg"));
-      return true;
-    } catch (const report::PlotError& error) {
-      fmt::print(stderr, "warning: no {}.svg: {}\n", kind_, error.what());
-    } catch (const std::logic_error& error) {
-      fmt::print(stderr, "warning: no {}.svg: {}\n", kind_, error.what());
-    }
-    return false;
+  bool draw(const std::function<report::Figure()>& figure) const {
+    return !options_.no_plot && drawn(figure, folder_.file(kind_ + ".svg"));
   }
   /// Writes summary.json, tells the outcome, and returns the exit code.
   io::ExitCode end(const study::SweepCounts& counts, io::ExitCode code, io::Json further,

@@ -70,7 +70,8 @@ class Validation {
       const io::ExitCode code = study::run_case(
           result, there.path(), asked_, [&](std::size_t column) { tell_law(result, column); });
       there.write_file("result.csv", study::result_csv(result));
-      if (!arguments_.common.no_plot && result.cpu_s() > 0.0) draw(result, there);
+      if (!arguments_.common.no_plot && result.cpu_s() > 0.0)
+        drawn([&] { return report::validation_picture(result); }, there.file("result.svg"));
       write_page(code == io::ExitCode::interrupted ? "interrupted" : "running");
       if (code == io::ExitCode::interrupted) {
         if (!arguments_.common.quiet)
@@ -97,14 +98,6 @@ class Validation {
                  study::verdict_words(law), law.cpu_s,
                  study::shared_reason(law).empty() ? "" : ": " + study::shared_reason(law));
     std::fflush(stdout);
-  }
-
-  void draw(const CaseResult& result, const io::ResultFolder& there) const {
-    try {
-      drawn(report::validation_picture(result), there.file("result.svg"));
-    } catch (const std::logic_error& error) {
-      fmt::print(stderr, "warning: no result.svg: {}\n", error.what());
-    }
   }
 
   Json write_page(const std::string& status) const {

@@ -113,6 +113,7 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
                             file.law.name, file.info->option, result.best().objective));
   figure.columns = 2;
   figure.panel_height_px = 220.0;
+  const std::vector<study::Outliers> outliers = study::outliers(problem, result);
   for (std::size_t k = 0; k < file.targets.size(); ++k) {
     const auto& t = file.targets[k];
     const MatrixXd sd = prediction_sd(problem, result, k);
@@ -143,6 +144,15 @@ Figure fit_picture(const input::FitFile& file, const calibration::Problem& probl
                   {Colour::blue});
       axes.points("measured", x, scaled(t.channels[c].observed, factor),
                   {Colour::black, 1.0, Marker::ring, 5.0});
+      for (const study::Outliers& found : outliers) {
+        if (found.target != k || found.channel != c) continue;
+        std::vector<double> out_x, out_y;
+        for (const std::size_t row : found.rows) {
+          out_x.push_back(x[row]);
+          out_y.push_back(factor * t.channels[c].observed[static_cast<Index>(row)]);
+        }
+        axes.points("outliers", out_x, out_y, {Colour::vermillion, 1.0, Marker::cross, 7.0});
+      }
       axes.line(t.held_out ? "predicted" : "fitted", curve_x, scaled(curve, factor),
                 {Colour::blue});
       Axes& residuals = figure.add_axes();

@@ -15,7 +15,8 @@ FitTask twin_task() {
 }
 
 FitTask task_of(const input::FitFile& file) {
-  calibration::Problem problem(calibration::ParameterSpace(file.free), file.targets, file.balance);
+  calibration::Problem problem(calibration::ParameterSpace(file.free), file.targets, file.balance,
+                               file.loss);
   const Eigen::VectorXd start = problem.space().start();
   return {file.name, std::move(problem), start, file.resolved};
 }

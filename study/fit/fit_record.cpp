@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "input/read_law.hpp"
 #include "io/json.hpp"
@@ -19,6 +19,22 @@ using calibration::Optimum;
 using calibration::StartResult;
 using Eigen::Index;
 using Json = io::Json;
+
+Json channel_json(const calibration::Target& target, const calibration::ChannelScore& s) {
+  Json c;
+  c["rows"] = s.rows;
+  c["rms"] = number(s.rms);
+  c["rms_over_range"] = number(s.relative_rms);
+  c["bias"] = number(s.bias);
+  c["chi2_per_row"] = number(s.chi2_per_row);
+  c["lag_correlation"] = number(s.lag_correlation);
+  c["systematic"] = s.systematic;
+  c["worst_at_x"] = number(target.x[s.worst_row]);
+  if (!target.held_out) c["objective"] = number(s.objective);
+  return c;
+}
+
+}  // namespace
 
 Json json_of(const Optimum& o) {
   Json out;
@@ -52,22 +68,6 @@ Optimum optimum_of(const Json& j) {
          t.at(3).is_null() ? std::numeric_limits<double>::infinity() : t.at(3).get<double>()});
   return o;
 }
-
-Json channel_json(const calibration::Target& target, const calibration::ChannelScore& s) {
-  Json c;
-  c["rows"] = s.rows;
-  c["rms"] = number(s.rms);
-  c["rms_over_range"] = number(s.relative_rms);
-  c["bias"] = number(s.bias);
-  c["chi2_per_row"] = number(s.chi2_per_row);
-  c["lag_correlation"] = number(s.lag_correlation);
-  c["systematic"] = s.systematic;
-  c["worst_at_x"] = number(target.x[s.worst_row]);
-  if (!target.held_out) c["objective"] = number(s.objective);
-  return c;
-}
-
-}  // namespace
 
 std::string quoted_words(const input::FitFile& file, const FitResult& result,
                          std::size_t parameter) {
@@ -128,6 +128,54 @@ std::vector<std::string> discrepancies(const input::FitFile& file,
   return texts;
 }
 
+std::vector<Outliers> outliers(const calibration::Problem& problem, const FitResult& result) {
+  constexpr double little = 0.25;
+  std::vector<Outliers> list;
+  if (!problem.loss().robust()) return list;
+  for (const calibration::Block& b : problem.blocks()) {
+    const Eigen::MatrixXd weights = problem.row_weights(b.target, result.best().z);
+    Outliers found{b.target, b.channel, {}};
+    for (Index i = 0; i < b.rows; ++i)
+      if (weights(i, static_cast<Index>(b.channel)) < little)
+        found.rows.push_back(static_cast<std::size_t>(i));
+    if (!found.rows.empty()) list.push_back(std::move(found));
+  }
+  return list;
+}
+
+namespace {
+
+/// Lines of the table, or rows where it has none.
+std::vector<int> places_of(const input::FitFile& file, const Outliers& found) {
+  const std::vector<int>& lines = file.about[found.target].lines;
+  std::vector<int> places;
+  for (const std::size_t row : found.rows)
+    places.push_back(row < lines.size() ? lines[row] : static_cast<int>(row + 1));
+  return places;
+}
+
+/// What each candidate would teach, and the best of them in a row.
+std::vector<std::string> design_words(const input::FitFile& file, const FitResult& result) {
+  std::vector<std::string> lines;
+  for (const calibration::Taught& t : result.design.candidates) {
+    const std::string& name = file.candidates[t.candidate].name;
+    lines.push_back(t.failed
+                        ? fmt::format("next test: {} breaks off at these parameters", name)
+                        : fmt::format("next test: {} would tell {:.3g} nats, most of {}, whose "
+                                      "95 % would be {:.2g} of the width",
+                                      name, t.gain, file.free[t.most].name,
+                                      t.narrower[static_cast<Index>(t.most)]));
+  }
+  std::vector<std::string> names;
+  for (const calibration::Taught& t : result.design.sequence)
+    names.push_back(file.candidates[t.candidate].name);
+  if (names.size() > 1)
+    lines.push_back(fmt::format("the best {} in a row: {}", names.size(), fmt::join(names, ", ")));
+  return lines;
+}
+
+}  // namespace
+
 std::vector<std::string> fit_words(const input::FitFile& file, const calibration::Problem& problem,
                                    const FitResult& result) {
   std::vector<std::string> lines;
@@ -152,8 +200,18 @@ std::vector<std::string> fit_words(const input::FitFile& file, const calibration
                     file.coarse.empty() ? file.options.local_evaluations : file.fine_evaluations));
   if (!u.combinations.empty() && u.combinations.front().relative_sd > 0.1)
     lines.push_back("worst determined: " + u.combinations.front().words);
+  for (const Outliers& found : outliers(problem, result)) {
+    const auto& t = file.targets[found.target];
+    const std::size_t n = found.rows.size();
+    lines.push_back(fmt::format("{} {} of {} ({}) look{} like {}: line{} {}", n,
+                                n == 1 ? "row" : "rows", file.about[found.target].data,
+                                t.channels[found.channel].name, n == 1 ? "s" : "",
+                                n == 1 ? "an outlier" : "outliers", n == 1 ? "" : "s",
+                                fmt::join(places_of(file, found), ", ")));
+  }
   for (const std::string& text : discrepancies(file, problem, result))
     lines.push_back("does not follow: " + text);
+  for (std::string& line : design_words(file, result)) lines.push_back(std::move(line));
   if (const auto& c = result.clusters; c.size() > 1)
     lines.push_back(fmt::format("{} distinct optima; the best from {} of {} starts{}", c.size(),
                                 c.front().starts.size(), result.starts.size(),
@@ -239,6 +297,38 @@ Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
   }
   j["targets"] = std::move(targets);
   j["discrepancy"] = discrepancies(file, problem, result);
+  if (!file.candidates.empty()) {
+    const auto json = [&](const calibration::Taught& t) {
+      Json one{{"test", file.candidates[t.candidate].name}};
+      if (t.failed) {
+        one["broke_off"] = true;
+        return one;
+      }
+      one["gain_nats"] = number(t.gain);
+      one["teaches_most"] = file.free[t.most].name;
+      for (std::size_t i = 0; i < file.free.size(); ++i)
+        one["width_after_over_before"][file.free[i].name] =
+            number(t.narrower[static_cast<Index>(i)]);
+      return one;
+    };
+    Json alone = Json::array(), sequence = Json::array();
+    for (const auto& t : result.design.candidates) alone.push_back(json(t));
+    for (const auto& t : result.design.sequence) sequence.push_back(json(t));
+    j["design"] = {{"candidates", std::move(alone)}, {"best_sequence", std::move(sequence)}};
+  }
+  if (problem.loss().robust()) {
+    Json list = Json::array();
+    for (const Outliers& found : outliers(problem, result)) {
+      const auto& t = file.targets[found.target];
+      std::vector<double> x;
+      for (const std::size_t row : found.rows) x.push_back(t.x[static_cast<Index>(row)]);
+      list.push_back({{"target", t.name},
+                      {"channel", t.channels[found.channel].name},
+                      {"lines", places_of(file, found)},
+                      {"x", x}});
+    }
+    j["outliers"] = std::move(list);
+  }
   Json correlation = Json::array();
   for (Index i = 0; i < u.correlation.rows(); ++i)
     correlation.push_back(list(u.correlation.row(i)));
@@ -310,6 +400,11 @@ Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
                  {"local", file.options.local},
                  {"seed", file.options.seed},
                  {"balance", file.balance}};
+  if (file.loss.robust()) {
+    j["solver"]["residuals"] =
+        file.loss.residuals == calibration::Residuals::huber ? "huber" : "student";
+    j["solver"]["tuning"] = file.loss.tuning;
+  }
   j["notes"] = file.notes;
   j["fingerprint"] = file.fingerprint;
   return j;
@@ -317,15 +412,20 @@ Json fit_report(const input::FitFile& file, const calibration::Problem& problem,
 
 std::string predictions_csv(const input::FitFile& file, const calibration::Problem& problem,
                             const FitResult& result) {
-  std::string text = "target,held_out,x_name,channel,x,measured,fitted\n";
+  std::string text = "target,held_out,x_name,channel,x,measured,fitted,weight\n";
   for (std::size_t k = 0; k < file.targets.size(); ++k) {
     const auto& t = file.targets[k];
     const Eigen::MatrixXd simulated = problem.predict(k, result.best().z).simulated;
+    Eigen::MatrixXd weights;
+    if (!t.held_out) weights = problem.row_weights(k, result.best().z);
     for (std::size_t c = 0; c < t.channels.size(); ++c)
-      for (Index i = 0; i < t.x.size(); ++i)
-        text += fmt::format("\"{}\",{},{},{},{},{},{}\n", t.name, t.held_out ? "yes" : "no",
+      for (Index i = 0; i < t.x.size(); ++i) {
+        const auto col = static_cast<Index>(c);
+        text += fmt::format("\"{}\",{},{},{},{},{},{},{}\n", t.name, t.held_out ? "yes" : "no",
                             t.x_name, t.channels[c].name, t.x[i], t.channels[c].observed[i],
-                            simulated(i, static_cast<Index>(c)));
+                            simulated(i, col),
+                            t.held_out ? std::string() : fmt::format("{}", weights(i, col)));
+      }
   }
   return text;
 }
@@ -369,6 +469,31 @@ std::string fitted_toml(const input::FitFile& file, const FitResult& result) {
     if (file.law_key[i].empty())
       text += "# " + line(file.free[i].name, u.values[static_cast<Index>(i)], comment(i));
   return text;
+}
+
+std::string design_csv(const input::FitFile& file, const FitResult& result) {
+  if (file.candidates.empty()) return {};
+  std::string text = "order,test,gain_nats,teaches_most";
+  for (const auto& p : file.free) text += fmt::format(",\"{} narrower\"", p.name);
+  text += "\n";
+  const auto line = [&](const std::string& order, const calibration::Taught& t) {
+    text += fmt::format("{},\"{}\",{},\"{}\"", order, file.candidates[t.candidate].name,
+                        t.failed ? std::nan("") : t.gain, t.failed ? "" : file.free[t.most].name);
+    for (const double x : t.narrower) text += fmt::format(",{}", x);
+    text += "\n";
+  };
+  for (const auto& t : result.design.candidates) line("alone", t);
+  for (std::size_t k = 0; k < result.design.sequence.size(); ++k)
+    line(fmt::format("{}", k + 1), result.design.sequence[k]);
+  return text;
+}
+
+void write_fit(const io::ResultFolder& folder, const input::FitFile& file,
+               const calibration::Problem& problem, const FitResult& result, const Json& report) {
+  folder.write_file("fit.json", report.dump(2) + "\n");
+  folder.write_file("fitted.toml", fitted_toml(file, result));
+  folder.write_file("predictions.csv", predictions_csv(file, problem, result));
+  if (!file.candidates.empty()) folder.write_file("design.csv", design_csv(file, result));
 }
 
 Json fit_summary(const input::FitFile& file, const std::string& status, const Usage& before,
@@ -446,6 +571,38 @@ std::vector<StartResult> read_starts(const std::vector<std::filesystem::path>& j
   for (const std::filesystem::path& path : journals)
     merge_into(all, read_one(path, file), path.string());
   return all;
+}
+
+void share_starts(input::FitFile& file, int from, int to) {
+  file.options.starts_from = from;
+  file.options.starts_to = to;
+  const int end = to < 0 ? file.options.starts : to;
+  if (from >= end || end > file.options.starts)
+    throw input::BadInput(
+        {fmt::format("--starts-from {} --starts-to {}: this fit has starts 0 to {}, and "
+                     "--starts-to is the first one that is left out",
+                     from, to, file.options.starts)});
+}
+
+std::vector<StartResult> begin_fit(const io::ResultFolder& folder, const input::FitFile& file,
+                                   const std::string& source, const std::vector<std::string>& merge,
+                                   bool resume) {
+  std::vector<std::filesystem::path> journals;
+  for (const std::string& dir : merge) {
+    journals.push_back(std::filesystem::path(dir) / starts_name);
+    if (!std::filesystem::exists(journals.back()))
+      throw io::IoError(journals.back(),
+                        "there is no journal of starts; give result folders of `repose fit`");
+  }
+  if (resume) journals.push_back(folder.file(starts_name));
+  std::vector<StartResult> done = read_starts(journals, file);
+  // the journal first: a kill in between must not lose the starts that it holds
+  folder.write_file(starts_name, starts_journal(file, done));
+  folder.remove_old_outputs();
+  folder.write_file("input.toml",
+                    fmt::format("# The input of this result, by repose {}.\n# From {}\n{}",
+                                version_string, source, file.resolved));
+  return done;
 }
 
 }  // namespace repose::study

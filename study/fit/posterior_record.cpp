@@ -219,10 +219,21 @@ std::vector<Draw> read_chains(const std::vector<std::filesystem::path>& journals
   return all;
 }
 
-bool have_chains(const std::vector<std::string>& folders, std::string_view journal) {
-  return std::any_of(folders.begin(), folders.end(), [&](const std::string& folder) {
-    return std::filesystem::exists(std::filesystem::path(folder) / journal);
+bool have_chains(const std::vector<std::string>& folders) {
+  return std::any_of(folders.begin(), folders.end(), [](const std::string& folder) {
+    return std::filesystem::exists(std::filesystem::path(folder) / chains_name);
   });
+}
+
+std::vector<Draw> begin_sampling(const io::ResultFolder& folder, const input::FitFile& file,
+                                 const Sampler& sampler, const std::vector<std::string>& merge,
+                                 bool resume) {
+  std::vector<std::filesystem::path> journals;
+  for (const std::string& dir : merge) journals.push_back(std::filesystem::path(dir) / chains_name);
+  if (resume) journals.push_back(folder.file(chains_name));
+  std::vector<Draw> done = read_chains(journals, sampler);
+  folder.write_file(chains_name, chains_journal(file, sampler, done));
+  return done;
 }
 
 void share_chains(input::FitFile& file, int from, int to, bool merged) {

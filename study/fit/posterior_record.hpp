@@ -36,8 +36,14 @@ std::string journal_line(const calibration::Draw& draw);
 /// read.
 std::vector<calibration::Draw> read_chains(const std::vector<std::filesystem::path>& journals,
                                            const Sampler& sampler);
-/// Is there such a journal in any of these folders?
-bool have_chains(const std::vector<std::string>& folders, std::string_view journal);
+/// Where a fit keeps its draws; whether there is one in any of these folders.
+inline constexpr std::string_view chains_name = "chains.jsonl";
+bool have_chains(const std::vector<std::string>& folders);
+/// The draws that these folders, and that of the fit if it is resumed, hold, which go into its
+/// journal. Errors: as read_chains; IoError.
+std::vector<calibration::Draw> begin_sampling(const io::ResultFolder& folder,
+                                              const input::FitFile& file, const Sampler& sampler,
+                                              const std::vector<std::string>& merge, bool resume);
 
 /// Leaves a share of the chains to be drawn, all from `from` if `to` is −1, and none where they are
 /// `merged`: then what was drawn is all there is. Errors: BadInput for a share that there is not,

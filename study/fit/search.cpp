@@ -16,7 +16,7 @@ void leave_out_pointless(std::vector<calibration::StartResult>& starts) {
 FitResult coarse_to_fine(const input::FitFile& file, calibration::Problem& problem,
                          const SearchRequest& request) {
   FitResult result;
-  calibration::Problem coarse(problem.space(), file.coarse, file.balance);
+  calibration::Problem coarse(problem.space(), file.coarse, file.balance, file.loss);
   coarse.interrupt_by(request.interrupted);
   // merged shares are refined again, from the best of all
   auto starts = request.merged ? request.done
@@ -46,7 +46,7 @@ Eigen::VectorXd resolution_error(input::FitFile& file, const calibration::Proble
   const calibration::Problem coarse(problem.space(), file.coarse, file.balance);
   calibration::Evaluation there, here;
   coarse.evaluate(z, false, there);
-  problem.evaluate(z, false, here);
+  problem.with_loss({}).evaluate(z, false, here);
   if (there.failed || here.failed) {
     file.notes.push_back("the intervals leave out the error of resolution: a run broke off");
     return {};
@@ -90,6 +90,8 @@ void analyse(input::FitFile& file, const calibration::Problem& problem, bool bri
   if (whole && file.bootstrap > 0)
     result.bootstrap = calibration::bootstrap(problem, result.uncertainty, best.z, file.bootstrap,
                                               file.options.seed, error);
+  if (whole)
+    result.design = calibration::design(problem, result.uncertainty, best.z, file.candidates);
   if (!brief) result.causes = calibration::misfit_causes(problem, best.z);
 }
 
@@ -121,7 +123,7 @@ Solution solve(input::FitFile& file, calibration::Problem& problem, const Search
   if (interrupted)
     problem.interrupt_by({});
   else
-    calibration::settle_priors(problem, file.options, result.starts);
+    calibration::settle(problem, file.options, result.starts);
   analyse(file, problem, interrupted, result);
   for (std::string& note : rows_beyond(file, problem, result.best().z))
     file.notes.push_back(std::move(note));

@@ -148,7 +148,7 @@ inline Verdict sit(const Clean& made, Kind kind, std::uint64_t seed, bool whole)
   std::vector<StartResult> starts(1);
   starts[0].optimum =
       levenberg_marquardt(problem, clipped(problem.space().coordinates(twin.truth_vector())));
-  settle_priors(problem, options, starts);
+  settle(problem, options, starts);
   const Eigen::VectorXd z = starts[0].optimum.z;
   const Uncertainty u = uncertainty(problem, z);
   Verdict v;

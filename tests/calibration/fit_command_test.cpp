@@ -173,6 +173,96 @@ TEST_F(FitCommand, TellsWhatIsWrongAndWhere) {
             std::string::npos);
 }
 
+/// The table with `plus` kPa on top of q in one of its rows.
+std::string spoiled(const std::string& table, std::size_t row, double plus) {
+  std::istringstream in(table);
+  std::string line, text;
+  for (std::size_t k = 0; std::getline(in, line); ++k) {
+    const auto first = line.find(','), last = line.rfind(',');
+    if (k == row + 2)  // below the comment and the header
+      line = fmt::format("{},{}{}", line.substr(0, first), std::stod(line.substr(first + 1)) + plus,
+                         line.substr(last));
+    text += line + "\n";
+  }
+  return text;
+}
+
+TEST_F(FitCommand, RobustResidualsNameTheRowsThatAreWrongAndAreTheSameShared) {
+  write("cu.csv", spoiled(spoiled(undrained_table(), 3, 60.0), 7, -80.0));
+  for (const char* residuals : {"huber", "student"}) {
+    write("fit.toml", fit_text() + fmt::format("residuals = \"{}\"\n[uncertainty]\nbootstrap = 4\n",
+                                               residuals));
+    ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("out")}), 0);
+    const auto report = io::Json::parse(content_of(folder_ / "out/fit.json"));
+    // the other rows are exact: their scale goes to nothing, and the outliers' pull with it
+    EXPECT_NEAR(report["parameters"]["M"]["value"].get<double>(), 0.888, 1e-4) << residuals;
+    EXPECT_NEAR(report["parameters"]["kappa"]["value"].get<double>(), 0.062, 1e-4) << residuals;
+    ASSERT_EQ(report["outliers"].size(), 1u);
+    EXPECT_EQ(report["outliers"][0]["channel"], "q_Pa");
+    // row 3 stands in line 6
+    EXPECT_EQ(report["outliers"][0]["lines"], (std::vector<int>{6, 10}));
+    EXPECT_EQ(report["solver"]["residuals"], residuals);
+    const std::string predictions = content_of(folder_ / "out/predictions.csv");
+    EXPECT_EQ(predictions.find("target,held_out,x_name,channel,x,measured,fitted,weight\n"), 0u);
+    ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("a"), "--starts-to", "2"}), 0);
+    ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("b"), "--starts-from", "2"}), 0);
+    ASSERT_EQ(
+        command({"fit", path("fit.toml"), "-o", path("merged"), "--merge", path("a"), path("b")}),
+        0);
+    EXPECT_EQ(content_of(folder_ / "merged/fitted.toml"), content_of(folder_ / "out/fitted.toml"));
+    EXPECT_EQ(content_of(folder_ / "merged/predictions.csv"), predictions);
+  }
+}
+
+TEST_F(FitCommand, CandidatesTellWhichTestWouldTeachWhat) {
+  const std::string candidates = R"([[candidate]]
+name = "compression"
+x = "p_Pa"
+y = "v"
+from = 200e3
+to = 800e3
+noise = { v = 0.002 }
+test = { kind = "isotropic", p_end = 800e3 }
+initial = { p = 200e3, ocr = 1.0 }
+[[candidate]]
+name = "drained"
+x = "eps_a"
+y = ["q_Pa", "eps_v"]
+to = 0.2
+noise = { q_Pa = 1e3, eps_v = 5e-4 }
+test = { kind = "triaxial", drainage = "drained" }
+initial = { p = 200e3, ocr = 1.0 }
+)";
+  const std::string compressed = replaced(fit_text(), "[solver]", candidates + "[solver]");
+  write("fit.toml", compressed);
+  ASSERT_EQ(command({"fit", path("fit.toml"), "-o", path("out")}), 0);
+  const auto design = io::Json::parse(content_of(folder_ / "out/fit.json"))["design"];
+  ASSERT_EQ(design["candidates"].size(), 2u);
+  EXPECT_EQ(design["candidates"][0]["test"], "drained");
+  EXPECT_GT(design["candidates"][0]["gain_nats"].get<double>(),
+            design["candidates"][1]["gain_nats"].get<double>());
+  // compression on the line depends on neither M nor κ
+  EXPECT_NEAR(design["candidates"][1]["gain_nats"].get<double>(), 0.0, 1e-6);
+  EXPECT_EQ(design["best_sequence"].size(), 3u);
+  EXPECT_EQ(content_of(folder_ / "out/design.csv")
+                .find("order,test,gain_nats,teaches_most,\"M narrower\",\"kappa narrower\"\n"),
+            0u);
+  // kappa as a share of lambda stands behind it, whatever the order of the file
+  write("ratio.toml",
+        replaced(replaced(compressed, "lambda = 0.161\n", ""),
+                 "kappa = { lower = 0.02, upper = 0.15, scale = \"log\" }",
+                 "kappa = { of = \"lambda\", lower = 0.1, upper = 0.8 }\nlambda = { lower = 0.08, "
+                 "upper = 0.3 }"));
+  ASSERT_EQ(command({"fit", path("ratio.toml"), "-o", path("ratio")}), 0);
+  const auto ratio = io::Json::parse(content_of(folder_ / "ratio/fit.json"));
+  ASSERT_EQ(ratio["design"]["candidates"].size(), 2u);
+  for (const auto& t : ratio["design"]["candidates"]) EXPECT_FALSE(t.contains("broke_off"));
+  // candidates say nothing of a start: a fit goes on with others
+  write("fit.toml", fit_text());
+  EXPECT_EQ(command({"fit", path("fit.toml"), "-o", path("out"), "--resume"}), 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out/design.csv"));
+}
+
 TEST_F(FitCommand, KappaStaysBelowLambdaWhereBoundsOverlap) {
   std::string text = replaced(fit_text(), "lambda = 0.161\n", "");
   text = replaced(text, "kappa = { lower = 0.02, upper = 0.15, scale = \"log\" }",

@@ -362,7 +362,7 @@ TEST(Intervals, OfTheDeterminedDoNotChangeWhereOnlyASumOfOthersIs) {
 Fit settled(Problem& problem) {
   std::vector<StartResult> starts(1);
   starts[0].optimum = levenberg_marquardt(problem, VectorXd::Constant(problem.parameters(), 0.5));
-  settle_priors(problem, {}, starts);
+  settle(problem, {}, starts);
   return {starts[0].optimum.z, uncertainty(problem, starts[0].optimum.z)};
 }
 

@@ -550,6 +550,26 @@ TEST(KeyTable, TyposInsideTheEntriesOfAFitAreRefused) {
   EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", "[solver]\nstart = 3\n")
                 .find("did you mean 'starts'?"),
             std::string::npos);
+  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", "[solver]\nresiduals = \"hubert\"\n")
+                .find("did you mean \"huber\"?"),
+            std::string::npos);
+  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", "[solver]\ntuning = 2.0\n")
+                .find("it belongs to residuals = \"huber\" or \"student\""),
+            std::string::npos);
+  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }",
+                     "[solver]\nresiduals = \"student\"\n[posterior]\ndraws = 300\n")
+                .find("[posterior] takes the errors to be normal"),
+            std::string::npos);
+  const std::string candidate =
+      "[[candidate]]\nname = \"shear\"\nx = \"eps_a\"\ny = \"q_Pa\"\nto = 0.1\ninitial = { p "
+      "= 2e5, ocr = 1.0 }\ntest = { kind = \"triaxial\", drainage = \"drained\" }\n";
+  const std::string noise = "noise = { q_Pa = 1e3 }\n";
+  EXPECT_EQ(complain("{ lower = 0.5, upper = 1.5 }", candidate + noise), "");
+  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", candidate).find("noise.q_Pa"),
+            std::string::npos);
+  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", candidate + noise + "rosw = 3\n")
+                .find("did you mean 'rows'?"),
+            std::string::npos);
   EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", "[posterior]\ndrawss = 300\n")
                 .find("did you mean 'draws'?"),
             std::string::npos);
