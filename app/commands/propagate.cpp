@@ -21,7 +21,7 @@ io::ExitCode run_propagate(const PropagateArguments& given) {
   const input::SceneFile scene = input::read_scene(read);
   const study::FittedPosterior posterior = study::read_posterior(given.fit);
   const study::PropagationPlan plan = study::plan_propagation(posterior, scene, given.options);
-  study::require_outputs(plan.asked.outputs, study::output_names(scene), "--output");
+  study::require_outputs(plan.asked.outputs, study::output_names(scene), "--for");
   study::SceneSweep coarse(file, plan.coarse_sets, "scene", false, "coarse"),
       fine(file, plan.fine_sets, "scene", false, "fine");
   const SweepFolder at(
@@ -30,16 +30,16 @@ io::ExitCode run_propagate(const PropagateArguments& given) {
                   posterior.name, posterior.fingerprint, plan.asked.runs, plan.asked.fine,
                   plan.asked.coarsen, fmt::join(plan.asked.outputs, " ")));
   if (at.is_kept()) return io::ExitCode::done;
-  if (!common.quiet)
-    for (const std::string& text : plan.warnings) fmt::print(stderr, "warning: {}\n", text);
+  for (const std::string& text : plan.warnings)
+    if (!common.quiet) fmt::print(stderr, "warning: {}\n", text);
   at.begin();
   std::size_t told = 0;
-  const std::size_t all = coarse.cases().size() + fine.cases().size();
   const auto run = [&](study::SceneSweep& sweep, const char* level) {
     return sweep.run_side_by_side(io::ResultFolder(at.folder().file(level)), common.threads,
                                   common.seed, common.resume, [&](std::size_t k) {
                                     if (common.quiet || common.json) return;
-                                    fmt::print("[{}/{}] {} run {} {}\n", ++told, all, level, k,
+                                    fmt::print("[{}/{}] {} run {} {}\n", ++told,
+                                               plan.draws.size() + plan.fine.size(), level, k,
                                                sweep.cases()[k - 1].summary.status);
                                     std::fflush(stdout);
                                   });
@@ -53,11 +53,7 @@ io::ExitCode run_propagate(const PropagateArguments& given) {
   const study::PropagationResult result = study::propagation(
       plan, coarse, fine, at.folder().file("coarse/runs"), at.folder().file("fine/runs"));
   const io::Json outputs = study::propagation_json(plan, result);
-  at.folder().write_file("propagation.json", outputs.dump(2) + "\n");
-  at.folder().write_file("propagation.csv", study::propagation_csv(plan, result));
-  at.folder().write_file("draws.csv", study::propagated_draws_csv(posterior, plan, result));
-  if (!result.depth.x.empty())
-    at.folder().write_file("depth_bands.csv", study::depth_bands_csv(result));
+  study::write_propagation(at.folder(), posterior, plan, result);
   const bool drawn = at.draw([&] { return report::propagation_picture(plan, result, at.name()); });
   if (!common.quiet && !common.json)
     for (const std::string& line : study::propagation_words(plan, result)) fmt::print("{}\n", line);
@@ -75,9 +71,8 @@ Command add_propagate(CLI::App& root) {
       "Example:\n"
       "  repose fit data/experiments/fit_glass_beads.toml --posterior -o beads\n"
       "  repose propagate beads data/scenes/flat_mu_i.toml --set grid.h=0.0125 -o run_out\n"
-      "Runs draws of the posterior with coarse cells, some of them with the scene's own as well,\n"
-      "and writes propagation.json, propagation.csv, draws.csv, depth_bands.csv (in the plane),\n"
-      "propagation.svg, summary.json, input.toml, coarse/runs and fine/runs.");
+      "Writes propagation.json, propagation.csv, draws.csv, depth_bands.csv (in the plane),\n"
+      "propagation.svg, summary.json, input.toml and all runs.");
   const auto arguments = std::make_shared<PropagateArguments>();
   verb.required("FIT_RESULT", arguments->fit, "The folder of a fit with a posterior", "");
   verb.required("SCENE.toml", arguments->scene, "A scene with a body of the fit's law", "");
@@ -88,7 +83,7 @@ Command add_propagate(CLI::App& root) {
                "Of these, run with the scene's own cells as well", "N");
   verb.option("--coarsen", arguments->coarsen, "Width of coarse cells over the scene's own (2)",
               "RATIO");
-  verb.option("--output", options.outputs,
+  verb.option("--for", options.outputs,
               "Figures of summary.json, or columns of series.csv at the end (front_99_m and "
               "height_m; over terrain runout_99_m and reached_m2)",
               "NAME...");

@@ -28,7 +28,7 @@ class SensitivityRun {
     return end(sweep, code, [&] { return study::outputs_of(sweep, plan_); });
   }
 
-  io::ExitCode of_scenes(const std::string& path, const input::InputFile& file) {
+  io::ExitCode of_scenes(const input::InputFile& file) {
     study::SceneSweep sweep(file, plan_.sets, "sensitivity", false);
     const auto usable = std::find_if(sweep.cases().begin(), sweep.cases().end(),
                                      [](const auto& one) { return one.file.has_value(); });
@@ -91,7 +91,7 @@ io::ExitCode run_sensitivity(const std::string& from, const input::InputFile& gi
   input.throw_if_bad();
   const study::SensitivityPlan plan(std::move(*asked), options.seed);
   SensitivityRun run(from, given, plan, options);
-  return is_scene ? run.of_scenes(from, given) : run.of_tests(given);
+  return is_scene ? run.of_scenes(given) : run.of_tests(given);
 }
 
 Command add_sensitivity(CLI::App& root) {

@@ -55,7 +55,6 @@ Figure propagation_picture(const study::PropagationPlan& plan,
         fmt::format("{:.4g}, 90 %: {:.4g} to {:.4g}", p.median, p.interval_90[0], p.interval_90[1]);
     axes.x.label = axis_name(plan.asked.outputs[k]);
     axes.y = {"draws up to here (%)", AxisScale::linear, 0.0, 100.0};
-    axes.legend = Legend::top_left;
     std::vector<double> coarse;
     for (const double x : result.coarse.col(static_cast<Eigen::Index>(k)))
       if (std::isfinite(x)) coarse.push_back(x);

@@ -65,8 +65,6 @@ std::vector<Index> spread(Index count, Index n) {
   return places;
 }
 
-std::string of_cells(double h) { return fmt::format("cells of {:.4g} m", h); }
-
 /// The depth of a run at places, 0 beyond its table; NaN if it has none.
 VectorXd depth_at(const fs::path& run, const std::vector<double>& x) {
   VectorXd depth = VectorXd::Constant(static_cast<Index>(x.size()), nan);
@@ -137,6 +135,50 @@ double cpu_of(const SceneSweep& sweep) {
 /// change from coarse to fine is (coarsen − 1) times it.
 double left_to_move(const PropagationPlan& plan, const Propagated& p) {
   return p.change / (plan.asked.coarsen - 1.0);
+}
+
+std::string propagation_csv(const PropagationPlan& plan, const PropagationResult& result) {
+  std::string text =
+      "output,mean,standard_error_of_mean,sd,p5,p50,p95,coarse_mean,change_of_mean,left_to_move,"
+      "correlation,draws,pairs\n";
+  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
+    const Propagated& p = result.outputs[k];
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", plan.asked.outputs[k], p.mean,
+                        p.standard_error, p.deviation, p.interval_90[0], p.median, p.interval_90[1],
+                        p.coarse_mean, p.change, left_to_move(plan, p), p.correlation, p.draws,
+                        p.pairs);
+  }
+  return text;
+}
+
+std::string propagated_draws_csv(const FittedPosterior& posterior, const PropagationPlan& plan,
+                                 const PropagationResult& result) {
+  std::string text = "run,draw";
+  for (const std::string& name : posterior.parameters) text += "," + io::csv_cell(name);
+  for (const std::string& name : plan.asked.outputs)
+    text += fmt::format(",{0}_coarse,{0}_fine", name);
+  text += "\n";
+  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{}", x) : ","; };
+  for (std::size_t run = 0; run < plan.draws.size(); ++run) {
+    text += fmt::format("{},{}", run + 1, plan.draws[run] + 1);
+    for (Index i = 0; i < posterior.draws.cols(); ++i)
+      text += cell(posterior.draws(plan.draws[run], i));
+    const auto fine = std::find(plan.fine.begin(), plan.fine.end(), static_cast<Index>(run));
+    for (Index k = 0; k < result.coarse.cols(); ++k) {
+      text += cell(result.coarse(static_cast<Index>(run), k));
+      text += fine == plan.fine.end() ? "," : cell(result.fine(fine - plan.fine.begin(), k));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string depth_bands_csv(const PropagationResult& result) {
+  const DepthBand& band = result.depth;
+  std::string text = "x_m,depth_p5_m,depth_p50_m,depth_p95_m\n";
+  for (std::size_t i = 0; i < band.x.size(); ++i)
+    text += fmt::format("{},{},{},{}\n", band.x[i], band.lower[i], band.median[i], band.upper[i]);
+  return text;
 }
 
 }  // namespace
@@ -299,48 +341,12 @@ Json propagation_json(const PropagationPlan& plan, const PropagationResult& resu
   return outputs;
 }
 
-std::string propagation_csv(const PropagationPlan& plan, const PropagationResult& result) {
-  std::string text =
-      "output,mean,standard_error_of_mean,sd,p5,p50,p95,coarse_mean,change_of_mean,left_to_move,"
-      "correlation,draws,pairs\n";
-  for (std::size_t k = 0; k < result.outputs.size(); ++k) {
-    const Propagated& p = result.outputs[k];
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", plan.asked.outputs[k], p.mean,
-                        p.standard_error, p.deviation, p.interval_90[0], p.median, p.interval_90[1],
-                        p.coarse_mean, p.change, left_to_move(plan, p), p.correlation, p.draws,
-                        p.pairs);
-  }
-  return text;
-}
-
-std::string propagated_draws_csv(const FittedPosterior& posterior, const PropagationPlan& plan,
-                                 const PropagationResult& result) {
-  std::string text = "run,draw";
-  for (const std::string& name : posterior.parameters) text += "," + io::csv_cell(name);
-  for (const std::string& name : plan.asked.outputs)
-    text += fmt::format(",{0}_coarse,{0}_fine", name);
-  text += "\n";
-  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{}", x) : ","; };
-  for (std::size_t run = 0; run < plan.draws.size(); ++run) {
-    text += fmt::format("{},{}", run + 1, plan.draws[run] + 1);
-    for (Index i = 0; i < posterior.draws.cols(); ++i)
-      text += cell(posterior.draws(plan.draws[run], i));
-    const auto fine = std::find(plan.fine.begin(), plan.fine.end(), static_cast<Index>(run));
-    for (Index k = 0; k < result.coarse.cols(); ++k) {
-      text += cell(result.coarse(static_cast<Index>(run), k));
-      text += fine == plan.fine.end() ? "," : cell(result.fine(fine - plan.fine.begin(), k));
-    }
-    text += "\n";
-  }
-  return text;
-}
-
-std::string depth_bands_csv(const PropagationResult& result) {
-  const DepthBand& band = result.depth;
-  std::string text = "x_m,depth_p5_m,depth_p50_m,depth_p95_m\n";
-  for (std::size_t i = 0; i < band.x.size(); ++i)
-    text += fmt::format("{},{},{},{}\n", band.x[i], band.lower[i], band.median[i], band.upper[i]);
-  return text;
+void write_propagation(const io::ResultFolder& folder, const FittedPosterior& posterior,
+                       const PropagationPlan& plan, const PropagationResult& result) {
+  folder.write_file("propagation.json", propagation_json(plan, result).dump(2) + "\n");
+  folder.write_file("propagation.csv", propagation_csv(plan, result));
+  folder.write_file("draws.csv", propagated_draws_csv(posterior, plan, result));
+  if (!result.depth.x.empty()) folder.write_file("depth_bands.csv", depth_bands_csv(result));
 }
 
 std::vector<std::string> propagation_words(const PropagationPlan& plan,
@@ -357,10 +363,12 @@ std::vector<std::string> propagation_words(const PropagationPlan& plan,
     }
     lines.push_back(fmt::format("{}: {:.4g}, 90 % of what the fit leaves open: {:.4g} to {:.4g}",
                                 name, p.median, p.interval_90[0], p.interval_90[1]));
+    const double left = left_to_move(plan, p), open = 0.5 * (p.interval_90[1] - p.interval_90[0]);
     lines.push_back(fmt::format(
-        "  discretisation: {} moved the mean by {:+.2g} from those of {}; as much as {:+.2g} is "
-        "left",
-        of_cells(plan.h), p.change, of_cells(plan.asked.coarsen * plan.h), left_to_move(plan, p)));
+        "  discretisation: cells of {:.4g} m moved the mean by {:+.2g} from those of {:.4g} m; an "
+        "error in proportion to the cells leaves {:+.2g}{}",
+        plan.h, p.change, plan.asked.coarsen * plan.h, left,
+        std::abs(left) > open ? ", more than the fit leaves open: finer cells tell more" : ""));
     lines.push_back(
         fmt::format("  sampling: mean {:.5g} give or take {:.2g}, as from {:.0f} fine runs; coarse "
                     "and fine ones "

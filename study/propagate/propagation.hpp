@@ -13,6 +13,7 @@
 #include "input/read_scene.hpp"
 #include "input/read_sweep.hpp"
 #include "io/json.hpp"
+#include "io/result_folder.hpp"
 #include "models/registry.hpp"
 #include "study/propagate/control_variate.hpp"
 #include "study/run/scene_sweep.hpp"
@@ -76,13 +77,13 @@ PropagationResult propagation(const PropagationPlan& plan, const SceneSweep& coa
                               const SceneSweep& fine_runs, const std::filesystem::path& coarse,
                               const std::filesystem::path& fine);
 
-/// propagation.json's list of outputs; propagation.csv; draws.csv, a line per draw; and
-/// depth_bands.csv.
+/// What propagation.json says of every output.
 io::Json propagation_json(const PropagationPlan& plan, const PropagationResult& result);
-std::string propagation_csv(const PropagationPlan& plan, const PropagationResult& result);
-std::string propagated_draws_csv(const FittedPosterior& posterior, const PropagationPlan& plan,
-                                 const PropagationResult& result);
-std::string depth_bands_csv(const PropagationResult& result);
+
+/// propagation.json, propagation.csv, draws.csv (a line per draw) and, in the plane,
+/// depth_bands.csv. Errors: IoError.
+void write_propagation(const io::ResultFolder& folder, const FittedPosterior& posterior,
+                       const PropagationPlan& plan, const PropagationResult& result);
 
 /// What is said of it, line by line.
 std::vector<std::string> propagation_words(const PropagationPlan& plan,

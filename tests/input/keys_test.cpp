@@ -558,14 +558,14 @@ TEST(KeyTable, TyposInsideTheEntriesOfAFitAreRefused) {
             std::string::npos);
   EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }",
                      "[solver]\nresiduals = \"student\"\n[posterior]\ndraws = 300\n")
-                .find("[posterior] takes the errors to be normal"),
+                .find("posterior takes the errors to be normal"),
             std::string::npos);
   const std::string candidate =
       "[[candidate]]\nname = \"shear\"\nx = \"eps_a\"\ny = \"q_Pa\"\nto = 0.1\ninitial = { p "
       "= 2e5, ocr = 1.0 }\ntest = { kind = \"triaxial\", drainage = \"drained\" }\n";
   const std::string noise = "noise = { q_Pa = 1e3 }\n";
   EXPECT_EQ(complain("{ lower = 0.5, upper = 1.5 }", candidate + noise), "");
-  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", candidate).find("noise.q_Pa"),
+  EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", candidate).find("noise needs q_Pa"),
             std::string::npos);
   EXPECT_NE(complain("{ lower = 0.5, upper = 1.5 }", candidate + noise + "rosw = 3\n")
                 .find("did you mean 'rows'?"),
