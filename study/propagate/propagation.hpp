@@ -69,7 +69,7 @@ struct PropagationResult {
   std::vector<Propagated> outputs;
   std::vector<std::vector<double>> values;  ///< of the distribution, ascending
   DepthBand depth;                          ///< empty in space
-  double coarse_cpu_s = 0.0, fine_cpu_s = 0.0;
+  double coarse_s = 0.0, fine_s = 0.0;      ///< of one core
 };
 
 /// From the runs, whose folders lie in `coarse` and `fine`.
