@@ -61,7 +61,7 @@ void read_uncertainty(TomlReader table, FitFile& out) {
 
 void read_posterior(TomlReader table, FitFile& out) {
   if (out.loss.robust())
-    table.report("noise", fmt::format("{} takes the errors to be normal: leave out it, or "
+    table.report("noise", fmt::format("{} takes the errors to be normal: leave out either it or "
                                       "solver.residuals",
                                       table.path()));
   out.posterior.emplace();

@@ -78,15 +78,15 @@ Command add_propagate(CLI::App& root) {
   verb.required("SCENE.toml", arguments->scene, "A scene with a body of the fit's law", "");
   study::PropagationOptions& options = arguments->options;
   verb.integer("--runs", options.runs, 4, input::most_sweep_runs,
-               "Draws that are run with coarse cells", "N");
+               "Draws that are run with coarse cells (100)", "N");
   verb.integer("--fine", options.fine, 4, input::most_sweep_runs,
-               "Of these, run with the scene's own cells as well", "N");
+               "Of these, run with the scene's own cells as well (12)", "N");
   verb.option("--coarsen", arguments->coarsen, "Width of coarse cells over the scene's own (2)",
               "RATIO");
   verb.option("--for", options.outputs,
               "Figures of summary.json, or columns of series.csv at the end (front_99_m and "
               "height_m; over terrain runout_99_m and reached_m2)",
-              "NAME...");
+              "NAME");
   add_run_options(verb, arguments->common);
   return {verb.app(), std::shared_ptr<CommonOptions>(arguments, &arguments->common), [arguments] {
             arguments->options.coarsen = arguments->coarsen.value_or(arguments->options.coarsen);
