@@ -122,7 +122,10 @@ template <int dim>
 void Simulation::Impl<dim>::save(const std::filesystem::path& path) const {
   const hdf5::Quiet quiet;
   const Impl& s = *this;
-  std::size_t bytes = std::size_t{1} << 20;
+  // the arrays below, and a little for what HDF5 adds: beyond it, its memory doubles
+  std::size_t bytes = (std::size_t{4} << 20) + s.grid.point_blocks.size() *
+                                                   (3 * dim + 2 * s.bodies.size()) *
+                                                   sizeof(std::int64_t);
   for (const PointsOf<dim>& points : s.bodies)
     bytes += points.slots() * (sizeof(std::int64_t) + points.fields * sizeof(double));
   const hdf5::NewFile file(bytes);

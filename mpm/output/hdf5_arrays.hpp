@@ -51,7 +51,10 @@ inline hid_t type_of<std::int64_t>() {
 /// With a checksum in every chunk (Fletcher's), which reading compares.
 template <class T>
 void write(hid_t file, const std::string& name, std::span<const T> values) {
-  const hsize_t n = values.size(), chunk = std::min<hsize_t>(n, 1 << 20);
+  // of a size: a last one that is nearly empty would take as much room as a full one
+  constexpr hsize_t most = 1 << 20;
+  const hsize_t n = values.size(), chunks = (n + most - 1) / most,
+                chunk = n > 0 ? (n + chunks - 1) / chunks : 0;
   const Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a data space");
   const Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make a property list");
   if (n > 0 && (H5Pset_chunk(layout, 1, &chunk) < 0 || H5Pset_fletcher32(layout) < 0))
